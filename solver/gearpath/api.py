@@ -1,0 +1,100 @@
+"""The public functions: a model in, labelled results, python-control objects and FMUs out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from numpy.typing import ArrayLike
+
+from .modelfile import Model, load
+from .network.assemble import assemble
+from .network.modal import ModalNetwork
+from .network.natural import natural_frequencies as _natural_frequencies
+from .network.system import MeshExcitation
+from .numerics.arrays import Real
+
+if TYPE_CHECKING:
+    import control
+    import xarray as xr
+
+__all__ = [
+    "Model",
+    "amplitude",
+    "frequency_response",
+    "load",
+    "modal_network",
+    "natural_frequencies",
+    "power_flow",
+    "state_space",
+]
+
+Progress = Callable[[int], None]
+
+
+def modal_network(model: Model) -> ModalNetwork:
+    """The model's components in all their free-free modes, and the joints between them."""
+    return assemble(model.system).modal()
+
+
+def amplitude(model: Model) -> float:
+    """Amplitude of the model's excitation: m of transmission error, or N or N m."""
+    excitation = model.system.excitation
+    return excitation.displacement if isinstance(excitation, MeshExcitation) else excitation.force
+
+
+def power_flow(
+    model: Model, frequencies_hz: ArrayLike | None = None, *, progress: Progress = lambda _: None
+) -> xr.Dataset:
+    """Structure-borne noise power flow through all bearings (Eq. 1 to 5), time averages.
+
+    Over `frequency` (Hz; default: the model's own grid): `input_power`, `transmitted_power` (W), the ratios `alpha`,
+    `alpha_force`, `alpha_moment`, and `dissipated_power` by `element`; over `path` (joint and degree of freedom)
+    `path_alpha`, `force` (acts on the receiver), `velocity_source`, `velocity_receiver`. Raises InputError for
+    frequencies that are not finite and positive.
+    """
+    from .study.labelled import labelled_power_flow
+
+    f = model.frequencies() if frequencies_hz is None else frequencies_hz
+    return labelled_power_flow(modal_network(model), f, amplitude(model), progress)
+
+
+def frequency_response(
+    model: Model,
+    frequencies_hz: ArrayLike | None = None,
+    outputs: str | Iterable[str] | None = None,
+    inputs: str | Iterable[str] | None = None,
+) -> xr.DataArray:
+    """Complex responses (frequency, output, input) in SI units, by the names of the FMU variables.
+
+    None stands for all linear outputs and all inputs. Raises InputError for a name that does not exist, with the
+    closest one that does.
+    """
+    from .study.labelled import labelled_response
+
+    f = model.frequencies() if frequencies_hz is None else frequencies_hz
+    return labelled_response(modal_network(model), f, outputs, inputs)
+
+
+def state_space(model: Model) -> control.StateSpace:
+    """The time twin as a `control.StateSpace`: inputs, outputs and states by name, a dot written as a slash.
+
+    Inputs are every mesh's `transmission_error` (m, in a proper realisation) and `force` (N, its inertial
+    equivalent), and the actuators; outputs are all linear time-domain outputs of the FMU.
+    """
+    from .statespace import state_space as build
+
+    return build(modal_network(model))
+
+
+def natural_frequencies(model: Model) -> Real:
+    """Undamped natural frequencies of the assembled machine, ascending, Hz; rigid-body modes are 0."""
+    return _natural_frequencies(modal_network(model))
+
+
+def export_fmu(model: Model, path: str | Path, fmi: str = "2.0", kind: str = "native") -> Path:
+    """Write the model as an FMU and return its path; see `gearpath.fmu`."""
+    from .fmu.export import export
+
+    return export(model.system, Path(path), fmi=fmi, kind=kind, frequency=model.frequency.start)

@@ -1,0 +1,115 @@
+"""One shaft as a chain of beam elements with disks, on the active degrees of freedom of its nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import InputError
+from ..numerics.arrays import Real
+from .beam import shape_functions, shear_parameter, timoshenko_element
+from .dofs import DOFS, rigid_motion
+
+if TYPE_CHECKING:
+    from .gear_train import Shaft
+    from .section import Section
+
+_SAME = 1e-9  # stations closer than this part of the shaft length are one
+
+
+@dataclass(frozen=True)
+class ShaftMesh:
+    """Finite element matrices of a shaft; coordinates run node by node over `dofs`."""
+
+    shaft: Shaft
+    nodes: Real  # z of the nodes, m
+    dofs: tuple[str, ...]
+    mass: Real
+    stiffness: Real
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return len(self.nodes) * len(self.dofs)
+
+    def motion(self, z: float) -> Real:
+        """Motion ux uy uz rx ry rz at z from the coordinates, (6, size), by the element's shape functions."""
+        e = int(np.clip(np.searchsorted(self.nodes, z) - 1, 0, len(self.nodes) - 2))
+        length = float(self.nodes[e + 1] - self.nodes[e])
+        xi = (z - self.nodes[e]) / length
+        picked = _picked(self.dofs)
+        out = np.zeros((6, self.size))
+        nearest = round(xi)
+        if abs(xi - nearest) * length < _SAME * self.shaft.length:
+            first = (e + nearest) * len(self.dofs)
+            out[picked, first + np.arange(len(picked))] = 1.0
+            return out
+        section = section_at(self.shaft, (self.nodes[e] + self.nodes[e + 1]) / 2.0)
+        phi = shear_parameter(section, self.shaft.material, length, self.shaft.shear_coefficient)
+        N, _ = shape_functions(xi, length, phi)
+        first = e * len(self.dofs)
+        out[:, first : first + 2 * len(picked)] = N[:, np.concatenate([picked, picked + 6])]
+        return out
+
+    def rigid(self) -> Real:
+        """Rigid motions in the active degrees of freedom about the shaft's middle, (size, len(dofs))."""
+        picked, middle = _picked(self.dofs), self.shaft.length / 2.0
+        blocks = [rigid_motion(np.array([0.0, 0.0, z - middle]))[np.ix_(picked, picked)] for z in self.nodes]
+        return np.vstack(blocks)
+
+
+def _picked(dofs: Sequence[str]) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    return np.array([DOFS.index(dof) for dof in dofs])
+
+
+def section_at(shaft: Shaft, z: float) -> Section:
+    """The section that covers z."""
+    end = 0.0
+    for section in shaft.sections:
+        end += section.length
+        if z <= end:
+            break
+    return section
+
+
+def shaft_stations(shaft: Shaft, bearings: Sequence[float]) -> Real:
+    """Distinct stations in order: both ends, changes of section, disks, bearings (m)."""
+    steps = np.cumsum([0.0] + [section.length for section in shaft.sections])
+    z = np.sort([*steps, *(disk.z for disk in shaft.disks), *bearings])
+    return np.asarray(z[np.concatenate([[True], np.diff(z) > _SAME * shaft.length])])
+
+
+def mesh_shaft(shaft: Shaft, bearings: Sequence[float], dofs: tuple[str, ...]) -> ShaftMesh:
+    """Divide a shaft into elements between its stations and assemble it.
+
+    Raises InputError where the number of spans and of entries in `elements` differ.
+    """
+    stations = shaft_stations(shaft, bearings)
+    spans = len(stations) - 1
+    counts = shaft.elements * spans if len(shaft.elements) == 1 else shaft.elements
+    if len(counts) != spans:
+        raise InputError(
+            f"elements has {len(counts)} entries for {spans} spans between the stations "
+            f"{', '.join(f'{z:g}' for z in stations)} m; give {spans} numbers, or one for all spans"
+        )
+    nodes = np.concatenate(
+        [[0.0]] + [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(stations[:-1], stations[1:], counts)]
+    )
+    picked, width = _picked(dofs), len(dofs)
+    chosen = np.concatenate([picked, picked + 6])
+    M, K = (np.zeros((len(nodes) * width, len(nodes) * width)) for _ in range(2))
+    for e in range(len(nodes) - 1):
+        length = float(nodes[e + 1] - nodes[e])
+        section = section_at(shaft, float(nodes[e] + nodes[e + 1]) / 2.0)
+        element_K, element_M = timoshenko_element(section, shaft.material, length, shaft.shear_coefficient)
+        block = slice(e * width, (e + 2) * width)
+        K[block, block] += element_K[np.ix_(chosen, chosen)]
+        M[block, block] += element_M[np.ix_(chosen, chosen)]
+    for disk in shaft.disks:
+        node = int(np.argmin(abs(nodes - disk.z)))
+        at = node * width + np.arange(width)
+        M[at, at] += disk.inertia()[picked]
+    return ShaftMesh(shaft, nodes, dofs, M, K)

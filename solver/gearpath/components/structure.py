@@ -1,0 +1,38 @@
+"""An elastic structure as the network sees it: matrices, rigid-body motions and what its ports read."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ..numerics.arrays import Real
+
+
+@dataclass(frozen=True)
+class Structure:
+    """A linear structure in n generalised coordinates q: M q'' + C q' + K q = f.
+
+    C is modal: each elastic free-free mode has the damping ratio `modal_damping`.
+    """
+
+    mass: Real  # (n, n), symmetric positive definite
+    stiffness: Real  # (n, n), symmetric positive semidefinite
+    rigid_modes: Real  # (n, r), a basis of the null space of the stiffness
+    modal_damping: float  # damping ratio of every elastic mode
+    ports: Mapping[str, Real]  # port name -> (6, n): motion ux uy uz rx ry rz of the port = rows @ q
+    meshes: Mapping[str, "MeshMotion"] = field(default_factory=dict)
+
+    @property
+    def size(self) -> int:
+        """Number of generalised coordinates n."""
+        return len(self.mass)
+
+
+@dataclass(frozen=True)
+class MeshMotion:
+    """How a gear mesh is excited: the rigid spin d that a unit transmission error leaves undone.
+
+    With q = q~ + d e the stiffness force of the transmission error becomes the inertial excitation -M d e''
+    on q~ (`F_e = m_e w^2 e` of the paper, corrected by the mass m_e = d^T M d).
+    """
+
+    displacement: Real  # d, (n,), m of spin per m of transmission error
+    equivalent_mass: float  # m_e = d^T M d, kg

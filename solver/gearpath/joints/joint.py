@@ -1,0 +1,40 @@
+"""A joint: full symmetric stiffness and damping between two ports on its degrees of freedom (Eq. 13 and 14)."""
+
+from dataclasses import dataclass
+
+Vector = tuple[float, float, float]
+Matrix = tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
+class Port:
+    """Where something is attached: a component, and on a gear train the shaft with a station or a disk.
+
+    `Port("ground")` is the ground; `Port("casing")` a rigid body, at the place that the joint gives.
+    """
+
+    component: str
+    shaft: str | None = None
+    z: float | None = None  # station from the shaft's first end, m
+    disk: str | None = None  # instead of z: the station of this disk
+
+    @property
+    def is_ground(self) -> bool:
+        """Whether the port does not move."""
+        return self.component == "ground"
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Bearing or mount between two ports; matrices in SI units on `dofs`, which may be singular.
+
+    `at` is the place on the rigid body; None where the other end is a shaft station, which then gives it.
+    """
+
+    kind: str  # "bearing" | "mount"
+    between: tuple[Port, Port]  # source, receiver: the joint's force acts on the receiver
+    dofs: tuple[str, ...]
+    stiffness: Matrix
+    damping: Matrix
+    at: Vector | None = None
+    scalar: bool = False  # given as one number (a mount's axial stiffness)

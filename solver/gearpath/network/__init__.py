@@ -1,0 +1,1 @@
+"""Components and joints as a network: mobility synthesis, power flow, reference solution."""

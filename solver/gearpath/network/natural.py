@@ -1,0 +1,16 @@
+"""Undamped natural frequencies of the assembled machine."""
+
+import numpy as np
+import scipy.linalg
+
+from ..numerics.arrays import Real
+from .modal import ModalNetwork
+
+
+def natural_frequencies(network: ModalNetwork) -> Real:
+    """Square roots of the eigenvalues of L + P^T K P, Hz, ascending; rigid-body modes come out as 0."""
+    K, _ = network.interface_matrices()
+    P = network.relative
+    values = scipy.linalg.eigvalsh(np.diag(network.eigenvalues) + P.T @ K @ P)
+    rounding = 16.0 * np.finfo(float).eps * values[-1]
+    return np.sqrt(np.where(values > rounding, values, 0.0)) / (2.0 * np.pi)

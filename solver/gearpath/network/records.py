@@ -1,0 +1,64 @@
+"""The records that the network is made of: plain arrays with names, in any one set of coordinates.
+
+The same records describe the network in the components' physical coordinates (for the reference solution) and in
+their modal coordinates (for the mobility synthesis, the time twin and the FMUs): only the width n of the rows differs.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from ..numerics.arrays import Real
+
+Quantity = Literal["displacement", "velocity", "acceleration", "force", "power"]
+
+
+@dataclass(frozen=True)
+class JointRows:
+    """A massless vector spring-damper between two ports; its force g acts on the receiver, -g on the source."""
+
+    name: str
+    kind: str  # "bearing" | "mount"
+    dofs: tuple[str, ...]  # the joint's degrees of freedom, d of them
+    source: Real  # (d, n): motion of the first port = source @ q
+    receiver: Real  # (d, n): motion of the second port; zero rows on the ground
+    stiffness: Real  # (d, d), symmetric, positive semidefinite, N/m ...
+    damping: Real  # (d, d), symmetric, positive semidefinite, N s/m ...
+    scalar: bool = False  # whether the model file gives it as one number (a mount's axial stiffness)
+    grounded: bool = False  # whether the receiver is the ground
+
+    @property
+    def relative(self) -> Real:
+        """(d, n): the joint's relative motion, source minus receiver (the signed selection B of the design)."""
+        return self.source - self.receiver
+
+
+@dataclass(frozen=True)
+class Load:
+    """An input of the network: a generalised force, or the transmission error of a mesh.
+
+    A force input u pushes with `column * u`. A transmission error e pushes with `-column * e''` on the
+    coordinates without it, and column = M d of `MeshMotion`.
+    """
+
+    name: str  # the FMU variable, such as "mesh.force"
+    unit: str
+    column: Real  # (n,)
+    mesh_displacement: Real | None = None  # d (n,) where the input is a transmission error, else None
+    equivalent_mass: float = 0.0  # m_e, kg, where the input is a transmission error
+
+    @property
+    def is_transmission_error(self) -> bool:
+        """Whether the input is a displacement inside a gear mesh."""
+        return self.mesh_displacement is not None
+
+
+@dataclass(frozen=True)
+class Output:
+    """An output of the network, linear in the motion and the joint forces except for a joint's power."""
+
+    name: str  # the FMU variable, such as "bearing_1.force_uy"
+    unit: str
+    quantity: Quantity
+    row: Real | None = None  # (n,) for displacement, velocity and acceleration
+    joint: str | None = None  # for force and power
+    dof: int = 0  # index into the joint's degrees of freedom, for force

@@ -1,0 +1,79 @@
+"""The unsynthesised reference: the whole machine in physical coordinates, solved directly at every frequency.
+
+Independent of the synthesis: no modes, no component mobilities, no elimination of the interface. Coordinates u and
+joint forces g are solved together,
+
+    [ K + i w C - w^2 M    B^T   ] [ u ]   [ f ]
+    [ (K_p + i w C_p) B    -I    ] [ g ] = [ -(K_p + i w C_p) B d e ]
+
+so that joint forces keep their digits across stiff joints, and joint stiffness is never inverted.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+
+from ..components.mobility import modal_damping_matrix
+from ..numerics.arrays import Complex, Real
+from .assemble import Network
+from .power import ratio
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Direct solution for the network's excitation with unit amplitude, F lines."""
+
+    force: Complex  # (n_p, F): all joints, stacked
+    velocity: Complex  # (n, F): physical velocities of all coordinates
+    input_power: Real  # (F,)
+    path_power: Real  # (n_p, F): 1/2 Re(conj(v_receiver) g) of every joint degree of freedom
+    alpha: Real  # (F,): through the power flow paths
+
+
+def reference_solution(network: Network, omega: Real) -> Reference:
+    """Solve the assembled machine at each angular frequency (rad/s), one pivoted factorisation a line."""
+    parts = list(network.structures.values())
+    M, K, C = (
+        scipy.linalg.block_diag(*blocks)
+        for blocks in zip(*((s.mass, s.stiffness, modal_damping_matrix(s)) for s in parts))
+    )
+    source, receiver = (
+        np.vstack([getattr(joint, side) for joint in network.joints]) for side in ("source", "receiver")
+    )
+    B = source - receiver
+    K_p, C_p = (
+        scipy.linalg.block_diag(*(getattr(joint, name) for joint in network.joints))
+        for name in ("stiffness", "damping")
+    )
+    load = next(item for item in network.loads if item.name == network.excitation)
+    n, n_p = len(M), len(B)
+    # the unknown forces are counted in units of a joint's stiffness times a unit motion: keeps the pivots sensible
+    unit = max(float(abs(K_p).max()), 1.0)
+    force, velocity = np.empty((n_p, len(omega)), complex), np.empty((n, len(omega)), complex)
+    input_power = np.empty(len(omega))
+    for k, w in enumerate(omega):
+        Z = (K_p + 1j * w * C_p) / unit
+        A = np.zeros((n + n_p, n + n_p), complex)
+        A[:n, :n] = K + 1j * w * C - w**2 * M
+        A[:n, n:] = unit * B.T
+        A[n:, :n] = Z @ B
+        A[n:, n:] = -np.eye(n_p)
+        b = np.zeros(n + n_p, complex)
+        if load.mesh_displacement is None:
+            b[:n] = load.column
+        else:
+            b[:n] = w**2 * load.column
+            b[n:] = -Z @ (B @ load.mesh_displacement)
+        x = scipy.linalg.solve(A, b)
+        force[:, k] = unit * x[n:]
+        velocity[:, k] = 1j * w * x[:n]
+        conjugate = load.column @ velocity[:, k]
+        input_power[k] = 0.5 * conjugate.real * (w**2 if load.is_transmission_error else 1.0)
+        if load.mesh_displacement is not None:
+            velocity[:, k] += 1j * w * load.mesh_displacement
+    path_power = 0.5 * np.real(np.conj(receiver @ velocity) * force)
+    carried = [joint.name in network.paths for joint in network.joints for _ in joint.dofs]
+    return Reference(
+        force, velocity, input_power, path_power, ratio(path_power[carried].sum(axis=0), input_power)
+    )

@@ -1,0 +1,119 @@
+"""The mobility synthesis: interface forces and motions of the coupled network, line by line in frequency.
+
+    (I + Z W) g = Z (B Y f_e - i w e),    W = B Y B^T,    Z = K/(i w) + C          (Eq. 3, without inverting K)
+    v = Y (f_e - B^T g)                                                            (Eq. 4)
+
+Y is never stored: the component mobilities are modal (Eq. 11), so W is one real product of the packed residues
+P_pr P_qr with the modal responses of the chunk.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..components.mobility import modal_response
+from ..numerics.arrays import Complex, Real
+from ..numerics.lines import real_times_complex, solve_lines
+from .modal import ModalNetwork
+from .records import Load
+
+
+@dataclass(frozen=True)
+class Response:
+    """Coupled response to unit loads on a chunk of F lines, m loads at a time."""
+
+    force: Complex  # g (n_p, m, F): joint forces on the receivers
+    elastic: Complex  # modal velocity q~' (N, m, F), without the motion i w d e of a transmission error itself
+    velocity: Complex  # modal velocity of the physical motion, q~' + i w d e, (N, m, F)
+
+
+@dataclass(frozen=True)
+class _Residues:
+    """P_pr P_qr of one component, p <= q, on the interface rows that it touches."""
+
+    modes: slice
+    rows: NDArray[np.intp]  # interface rows with motion in this component, (k,)
+    products: Real  # (k (k + 1) / 2, N_c)
+    unpack: NDArray[np.intp]  # (k, k): where each pair stands in `products`
+
+    @classmethod
+    def of(cls, P: Real, modes: slice) -> "_Residues":
+        """Residues of the component whose modes are the given slice."""
+        rows = np.flatnonzero(P[:, modes].any(axis=1))
+        p, q = np.triu_indices(len(rows))
+        unpack = np.zeros((len(rows), len(rows)), np.intp)
+        unpack[p, q] = unpack[q, p] = np.arange(len(p))
+        shapes = P[rows, modes]
+        return cls(modes, rows, shapes[p] * shapes[q], unpack)
+
+
+class Synthesis:
+    """What does not depend on frequency, prepared once: residues of the components, joint matrices, loads."""
+
+    def __init__(self, network: ModalNetwork, loads: Sequence[Load]) -> None:
+        self.network, self.loads = network, tuple(loads)
+        self.P = network.relative
+        self._residues = [_Residues.of(self.P, block) for block in network.components.values()]
+        self._blocks = list(zip(network.joint_slices().values(), network.joints))
+
+    @property
+    def bytes_per_line(self) -> int:
+        """Working set of one frequency line."""
+        n_p, N = self.P.shape
+        return 16 * (N * (1 + 3 * len(self.loads)) + 5 * n_p**2 + 4 * n_p * len(self.loads))
+
+    def solve(self, omega: Real) -> Response:
+        """Coupled response at the angular frequencies `omega` (rad/s, all positive)."""
+        network, P = self.network, self.P
+        response = modal_response(network.eigenvalues, network.damping, omega)
+        free, own = self._free_motion(response, omega)
+        W = self._interface_mobility(response)
+        per_frequency = 1.0 / (1j * omega)
+        A = self._joint_force(W, per_frequency)
+        diagonal = np.arange(len(P))
+        A[diagonal, diagonal] += 1.0
+        relative = real_times_complex(P, free if own is None else free + own)
+        g = solve_lines(A, self._joint_force(relative, per_frequency))
+        elastic = free - response[:, None] * real_times_complex(P.T, g)
+        return Response(g, elastic, elastic if own is None else elastic + own)
+
+    def _interface_mobility(self, response: Complex) -> Complex:
+        """W = B Y B^T (n_p, n_p, F), summed over the components."""
+        W = np.zeros((len(self.P), len(self.P), response.shape[1]), complex)
+        for part in self._residues:
+            packed = real_times_complex(part.products, response[part.modes])
+            W[np.ix_(part.rows, part.rows)] += packed[part.unpack]
+        return W
+
+    def _joint_force(self, motion: Complex, per_frequency: Complex) -> Complex:
+        """Z @ motion for the block-diagonal Z = K/(i w) + C; motion (n_p, m, F)."""
+        out = np.empty_like(motion)
+        for rows, joint in self._blocks:
+            part = motion[rows]
+            out[rows] = real_times_complex(joint.damping, part)
+            out[rows] += per_frequency * real_times_complex(joint.stiffness, part)
+        return out
+
+    def _free_motion(self, response: Complex, omega: Real) -> tuple[Complex, Complex | None]:
+        """Modal velocities of the uncoupled components under each load; and i w d e of transmission errors."""
+        free = np.empty((len(response), len(self.loads), len(omega)), complex)
+        own = None
+        for k, load in enumerate(self.loads):
+            if load.mesh_displacement is None:
+                free[:, k] = response * load.column[:, None]
+                continue
+            free[:, k] = response * (load.column[:, None] * omega**2)
+            own = np.zeros_like(free) if own is None else own
+            own[:, k] = load.mesh_displacement[:, None] * (1j * omega)
+        return free, own
+
+
+def load_power(load: Load, response: Complex, omega: Real) -> Real:
+    """Input power of a unit load, P_e = 1/2 Re(v_e^* F_e), W: `response` is q~' (N, F).
+
+    For a transmission error F_e = m_e w^2 e acts on v_e = column @ q~' / m_e; the mass cancels.
+    """
+    v = real_times_complex(load.column[None, :], response)[0]
+    return np.asarray(0.5 * v.real * (omega**2 if load.is_transmission_error else 1.0))

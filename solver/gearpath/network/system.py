@@ -1,0 +1,66 @@
+"""The whole machine as data: components, joints, excitation, actuators and sensors.
+
+Every class here and below is a frozen dataclass of plain values, so that `repr` of a system is Python source that
+builds it again: this is how the python FMU carries its model.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from ..components import GearTrain, RigidBody
+from ..joints import Joint, Port
+
+Vector = tuple[float, float, float]
+Component = GearTrain | RigidBody
+
+
+@dataclass(frozen=True)
+class MeshExcitation:
+    """Transmission error of a mesh, amplitude in m."""
+
+    component: str
+    mesh: str
+    displacement: float = 1.0e-6
+
+
+@dataclass(frozen=True)
+class PointExcitation:
+    """A force (N) or moment (N m) on one degree of freedom of a port."""
+
+    port: Port
+    dof: str
+    force: float = 1.0
+    at: Vector | None = None  # on a rigid body; None is the centre of gravity
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """An additional force input on one degree of freedom."""
+
+    port: Port
+    dof: str
+    at: Vector | None = None
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """An additional motion output on one degree of freedom."""
+
+    port: Port
+    dof: str
+    quantity: Literal["displacement", "velocity", "acceleration"] = "velocity"
+    at: Vector | None = None
+
+
+@dataclass(frozen=True)
+class System:
+    """A machine; names of components, joints and meshes are unique."""
+
+    name: str
+    dofs: tuple[str, ...]
+    components: Mapping[str, Component]
+    joints: Mapping[str, Joint]
+    excitation: MeshExcitation | PointExcitation
+    actuators: Mapping[str, Actuator] = field(default_factory=dict)
+    sensors: Mapping[str, Sensor] = field(default_factory=dict)

@@ -1,0 +1,1 @@
+"""Arrays only: solves across frequency lines, chunks, exact discretisation."""

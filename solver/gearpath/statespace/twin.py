@@ -1,0 +1,46 @@
+"""The network as a `control.StateSpace` with named inputs, outputs and states."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..errors import MissingExtraError
+from ..network.modal import ModalNetwork
+from ..network.time_twin import time_twin
+
+if TYPE_CHECKING:
+    import control
+
+
+def signal_name(variable: str) -> str:
+    """python-control's name of an FMU variable: it allows no dot, so `bearing_1.force_uy` is `bearing_1/force_uy`."""
+    return variable.replace(".", "/")
+
+
+def state_space(network: ModalNetwork) -> control.StateSpace:
+    """x' = A x + B u, y = C x + D u: all loads as inputs, all linear outputs (SI units, as the FMU variables).
+
+    States come in two halves, mode by mode: `component/mode_k/x`, the modal displacement times the mode's angular
+    frequency, and `component/mode_k/v`, the modal velocity without what the transmission error adds at once.
+    """
+    try:
+        import control
+    except ImportError as error:
+        raise MissingExtraError("python-control", "control") from error
+    twin = time_twin(network)
+    modes = [
+        f"{name}/mode_{k + 1}"
+        for name, block in network.components.items()
+        for k in range(block.stop - block.start)
+    ]
+    return control.StateSpace(
+        twin.A,
+        twin.B,
+        twin.C,
+        twin.D,
+        inputs=[signal_name(load.name) for load in twin.loads],
+        outputs=[signal_name(output.name) for output in twin.outputs],
+        states=[f"{mode}/x" for mode in modes] + [f"{mode}/v" for mode in modes],
+        name=network.name,
+        remove_useless_states=False,
+    )
