@@ -197,6 +197,8 @@ class GearTrain:
     ) -> dict[str, MeshMotion]:
         """Rigid spin d of each mesh's transmission error: d = R J^-1 T^T (T J^-1 T^T)^-1, R the rigid spins."""
         size, count = len(M), len(self.meshes)
+        if not count:
+            return {}
         if spins:
             spin, levers = np.eye(size)[:, -spins:], np.eye(count)
         else:

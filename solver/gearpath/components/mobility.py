@@ -4,7 +4,7 @@ import numpy as np
 import scipy.linalg
 
 from ..numerics.arrays import Complex, Real
-from .modes import Modes
+from .modes import Modes, modes
 from .structure import Structure
 
 
@@ -32,16 +32,10 @@ def mobility_direct(structure: Structure, rows: Real, omega: Real) -> Complex:
 
 
 def modal_damping_matrix(structure: Structure) -> Real:
-    """C = 2 zeta L (L^-1 K L^-T)^(1/2) L^T with M = L L^T: the same damping ratio in every elastic mode.
+    """C = M Phi diag(2 zeta w_r) Phi^T M: the damping ratio zeta in every elastic mode, none in rigid-body motion.
 
-    The principal square root needs no mode shapes, which keeps the direct route apart from the modal one.
+    It satisfies C M^-1 C = 4 zeta^2 K, which defines it without any modes.
     """
-    if structure.modal_damping == 0.0:
-        return np.zeros_like(structure.mass)
-    L = scipy.linalg.cholesky(structure.mass, lower=True)
-    inner = scipy.linalg.solve_triangular(L, structure.stiffness, lower=True)
-    A = scipy.linalg.solve_triangular(L, inner.T, lower=True)
-    values, vectors = scipy.linalg.eigh((A + A.T) / 2.0)
-    values[: structure.rigid_modes.shape[1]] = 0.0
-    root = vectors * np.sqrt(np.maximum(values, 0.0)) @ vectors.T
-    return np.asarray(2.0 * structure.modal_damping * L @ root @ L.T)
+    basis = modes(structure)
+    momentum = structure.mass @ basis.shapes
+    return np.asarray((momentum * (2.0 * structure.modal_damping * np.sqrt(basis.eigenvalues))) @ momentum.T)

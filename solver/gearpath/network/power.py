@@ -78,7 +78,7 @@ def power_flow(
         w = omega[part]
         solved = synthesis.solve(w)
         g, elastic, velocity = solved.force[:, 0], solved.elastic[:, 0], solved.velocity[:, 0]
-        flow.input_power[part] = amplitude**2 * load_power(load, elastic, w)
+        flow.input_power[part] = amplitude**2 * load_power(network, load, solved, 0, w)
         flow.force[:, part] = amplitude * g[interface]
         v, slip = real_times_complex(receiver, velocity), real_times_complex(synthesis.P, velocity)
         flow.velocity_receiver[:, part] = amplitude * v[interface]

@@ -110,10 +110,15 @@ class Synthesis:
         return free, own
 
 
-def load_power(load: Load, response: Complex, omega: Real) -> Real:
-    """Input power of a unit load, P_e = 1/2 Re(v_e^* F_e), W: `response` is q~' (N, F).
+def load_power(network: ModalNetwork, load: Load, solved: Response, which: int, omega: Real) -> Real:
+    """Input power of a unit load, W: `which` is its place among the solved loads.
 
-    For a transmission error F_e = m_e w^2 e acts on v_e = column @ q~' / m_e; the mass cancels.
+    A force: P_e = 1/2 Re(v_e^* F). A transmission error: P_e = 1/2 Re(v_e^* F_e) with F_e = m_e w^2 e acting on
+    v_e = column @ q~' / m_e (the mass cancels), plus what e does against joints that resist the spin d itself (zero
+    unless a bearing has stiffness about the shaft axis).
     """
-    v = real_times_complex(load.column[None, :], response)[0]
-    return np.asarray(0.5 * v.real * (omega**2 if load.is_transmission_error else 1.0))
+    v = real_times_complex(load.column[None, :], solved.elastic[:, which])[0]
+    if load.mesh_displacement is None:
+        return np.asarray(0.5 * v.real)
+    held = (network.relative @ load.mesh_displacement) @ solved.force[:, which]
+    return np.asarray(0.5 * (omega**2 * v.real + omega * held.imag))

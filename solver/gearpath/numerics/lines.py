@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import AccuracyError
 from ..numerics.arrays import Complex, Real
 
-_BACKWARD_ERROR = 1e-12  # componentwise; lines above it are solved again with pivoting
+_BACKWARD_ERROR = 100 * np.finfo(float).eps  # componentwise; lines above it are solved again with pivoting
 _CHUNK_BYTES = 4 << 20  # working set of one chunk: stays in the cache of the processor
 _MOST_LINES = 4096
 

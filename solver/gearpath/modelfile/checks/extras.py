@@ -1,0 +1,101 @@
+"""Rules of the frequencies, the excitation, the actuators and the sensors."""
+
+from ...errors import ModelError
+from ..hints import hint
+from ..references import find, find_mesh, find_port
+from ..tables import ActuatorTable, ExcitationTable, FileTable
+from ..train_tables import GearTrainTable
+from ..wording import show
+
+_OF_MESH, _OF_POINT = ("displacement",), ("dof", "force", "at")
+
+
+def check_frequency(file: FileTable) -> None:
+    """Refuse an inverted range."""
+    if file.frequency.stop <= file.frequency.start:
+        raise ModelError(
+            "frequency.stop",
+            f"{file.frequency.stop:g} Hz is not above start, {file.frequency.start:g} Hz",
+            "give a stop above start",
+        )
+
+
+def check_excitation(file: FileTable) -> None:
+    """Exactly one of mesh and point, with the keys that belong to it."""
+    table = file.excitation
+    given = table.model_fields_set
+    if ("mesh" in given) == ("point" in given):
+        problem = f"{show(table.point)} is given beside mesh" if "mesh" in given else "is missing"
+        remedy = 'give either mesh = "component.mesh" or point, dof and force'
+        raise ModelError("excitation.point" if "mesh" in given else "excitation.mesh", problem, remedy)
+    chosen, other, foreign = ("mesh", "point", _OF_POINT) if "mesh" in given else ("point", "mesh", _OF_MESH)
+    for key in foreign:
+        if key in given:
+            value = getattr(table, key)
+            value = list(value) if isinstance(value, tuple) else value
+            raise ModelError(
+                f"excitation.{key}", f"{show(value)} belongs to {other}, not to {chosen}", f"leave {key} out"
+            )
+    if chosen == "mesh":
+        find_mesh(file, table.mesh, "excitation.mesh")
+    else:
+        _check_point(file, table)
+
+
+def _check_point(file: FileTable, table: ExcitationTable) -> None:
+    if table.point == "ground":
+        raise ModelError("excitation.point", '"ground" does not move', "name a component")
+    port = find_port(file, table.point, "excitation.point")
+    if not table.dof:
+        raise ModelError("excitation.dof", "is missing", f"give one of dofs: {', '.join(file.dofs)}")
+    _check_active(file, table.dof, "excitation.dof")
+    if table.at is not None and port.shaft is not None:
+        raise ModelError(
+            "excitation.at",
+            f"{show(list(table.at))} is given beside {show(table.point)}, which has a place",
+            "leave at out",
+        )
+
+
+def _check_active(file: FileTable, dof: str, key: str) -> None:
+    if dof not in file.dofs:
+        raise ModelError(key, f"{show(dof)} is not among the active dofs", hint("", file.dofs))
+
+
+def check_actuators(file: FileTable) -> None:
+    """Check every actuator."""
+    for name, table in file.actuators.items():
+        _check_item(file, table, f"actuators.{name}")
+
+
+def check_sensors(file: FileTable) -> None:
+    """Check every sensor."""
+    for name, table in file.sensors.items():
+        key = f"sensors.{name}"
+        train = _check_item(file, table, key)
+        if table.quantity == "acceleration" and train is not None and train.meshes:
+            raise ModelError(
+                f"{key}.quantity",
+                f'"acceleration" on {show(table.component)} needs the derivative of the transmission error',
+                'use "velocity", or put the sensor on the casing',
+            )
+
+
+def _check_item(file: FileTable, table: ActuatorTable, key: str) -> GearTrainTable | None:
+    """Check component, point and degree of freedom; returns the gear train that it sits on."""
+    find("component", table.component, file.components, f"{key}.component")
+    component = file.components[table.component]
+    train = component if isinstance(component, GearTrainTable) else None
+    if train is None and isinstance(table.point, str):
+        raise ModelError(
+            f"{key}.point",
+            f"{show(table.point)} is not a place on a rigid body",
+            "give [x, y, z] in m, or leave it out for the centre of gravity",
+        )
+    if train is not None:
+        if not isinstance(table.point, str):
+            problem = "is missing" if table.point is None else f"{show(list(table.point))} is not on a shaft"
+            raise ModelError(f"{key}.point", problem, 'give "shaft@z" (m from its first end) or "shaft.disk"')
+        find_port(file, f"{table.component}.{table.point}", f"{key}.point")
+    _check_active(file, table.dof, f"{key}.dof")
+    return train

@@ -1,0 +1,119 @@
+"""References within a model file: "gear_train.input@0.0", "casing", "gear_train.mesh"."""
+
+import re
+from collections.abc import Iterable
+from math import inf, isfinite
+
+from ..errors import ModelError
+from ..joints import Port
+from .hints import hint
+from .tables import FileTable
+from .train_tables import GearTrainTable, ShaftTable
+from .wording import show
+
+SAME = 1e-9  # rounding of stations, relative to the shaft's length
+_NAME = r"[A-Za-z][A-Za-z0-9_]*"
+_PORT = re.compile(
+    rf"(?P<component>{_NAME})(?:\.(?P<shaft>{_NAME}))?(?:@(?P<z>[^@\s]+)|\.(?P<disk>{_NAME}))?"
+)
+_FORMS = 'write "component.shaft@z", "component.shaft.disk", "component" or "ground"'
+
+
+def find(kind: str, name: str, known: Iterable[str], key: str) -> None:
+    """Refuse the name of something that is not there."""
+    names = list(known)
+    if name not in names:
+        raise ModelError(key, f"there is no {kind} {show(name)}", hint(name, names))
+
+
+def length(shaft: ShaftTable) -> float:
+    """Length of a shaft, m."""
+    return sum(section.length for section in shaft.sections) if shaft.sections else shaft.length or 0.0
+
+
+def find_port(file: FileTable, text: str, key: str) -> Port:
+    """The port that `text` names, in a file whose shafts are checked; raises ModelError."""
+    if text == "ground":
+        return Port("ground")
+    found = _PORT.fullmatch(text)
+    if found is None:
+        raise ModelError(key, f"{show(text)} is not a reference", _FORMS)
+    name, shaft, z, disk = found.group("component", "shaft", "z", "disk")
+    find("component", name, file.components, key)
+    component = file.components[name]
+    if not isinstance(component, GearTrainTable):
+        if text != name:
+            raise ModelError(
+                key,
+                f"{show(text)} names a part of a rigid body",
+                f'write "{name}" and give the place with at',
+            )
+        return Port(name)
+    example = shaft or next(iter(component.shafts))
+    if shaft is not None:
+        find("shaft", f"{name}.{shaft}", [f"{name}.{other}" for other in component.shafts], key)
+    if shaft is None or (z is None and disk is None):
+        raise ModelError(
+            key,
+            f"{show(text)} names no place on a shaft",
+            f'write "{name}.{example}@0.0" (distance from the shaft\'s first end in m) or the name of a disk',
+        )
+    table = component.shafts[shaft]
+    if disk is not None:
+        disks = [f"{name}.{shaft}.{item.name}" for item in table.disks]
+        find("disk", text, disks, key)
+        return Port(name, shaft, disk=disk)
+    return Port(name, shaft, z=_station(text, z, length(table), key))
+
+
+def _station(text: str, z: str, end: float, key: str) -> float:
+    try:
+        value = float(z)
+    except ValueError:
+        value = inf
+    if not isfinite(value):
+        raise ModelError(key, f"{show(text)} has no number after @", "give the distance in m, such as @0.125")
+    if not -SAME * end <= value <= (1.0 + SAME) * end:
+        raise ModelError(key, f"{show(text)} lies off the shaft", f"give a station from 0 to {end:.9g} m")
+    return min(max(value, 0.0), end)
+
+
+def find_gear(train: GearTrainTable, text: str, key: str) -> tuple[str, str]:
+    """(shaft, disk) of the gear "shaft.disk" of a mesh."""
+    gears = [f"{name}.{disk.name}" for name, shaft in train.shafts.items() for disk in shaft.disks]
+    find("gear", text, gears, key)
+    shaft, disk = text.split(".")
+    return shaft, disk
+
+
+def find_mesh(file: FileTable, text: str, key: str) -> tuple[str, str]:
+    """(component, mesh) of the reference "component.mesh"."""
+    meshes = [
+        f"{name}.{mesh}"
+        for name, component in file.components.items()
+        if isinstance(component, GearTrainTable)
+        for mesh in component.meshes
+    ]
+    find("mesh", text, meshes, key)
+    component, mesh = text.split(".")
+    return component, mesh
+
+
+def station_of(file: FileTable, port: Port) -> float | None:
+    """Distance of a port from its shaft's first end, m; None off a gear train."""
+    if port.disk is None:
+        return port.z
+    train = file.components[port.component]
+    assert isinstance(train, GearTrainTable)
+    assert port.shaft is not None
+    return next(disk.z for disk in train.shafts[port.shaft].disks if disk.name == port.disk)
+
+
+def place_of(file: FileTable, port: Port) -> tuple[float, float, float] | None:
+    """Global place of a shaft station, m; None off a gear train."""
+    train = None if port.is_ground else file.components[port.component]
+    z = station_of(file, port)
+    if not isinstance(train, GearTrainTable) or port.shaft is None or z is None:
+        return None
+    x0, y0, z0 = train.shafts[port.shaft].origin
+    return (x0, y0, z0 + z)

@@ -1,0 +1,156 @@
+"""The tables of a model file; the dataclasses of the floors below hold what is built from them.
+
+Rules between several keys are in `checks`, the resolution of references in `references`.
+"""
+
+from typing import Annotated, Any, Literal, get_args
+
+import numpy as np
+from pydantic import BeforeValidator, Field
+
+from ..components.dofs import DOFS
+from ..joints.joint import Matrix, Vector
+from ..numerics.arrays import Real
+from .forms import Dofs, Impedance, Spot
+from .hints import hint
+from .leaf import is_table, wrong
+from .numbers import Count, Quantity, Row
+from .table import Table
+from .train_tables import GearTrainTable, MaterialTable, Named
+from .wording import show
+from .words import Choice, Pair, Text
+
+PLACE = Row("place", Quantity("coordinate", "m", plausible=(-1e3, 1e3), slip="did you mean m, not mm?"), 3)
+Quantities = Literal["displacement", "velocity", "acceleration"]
+
+
+class FrequencyTable(Table):
+    """Frequencies of sweeps, evenly spaced."""
+
+    start: Annotated[float, Quantity("first frequency", "Hz", above=0.0)] = 20.0
+    stop: Annotated[float, Quantity("last frequency", "Hz", above=0.0)] = 5000.0
+    points: Annotated[int, Count("number of frequencies", at_least=2)] = 2000
+
+    def frequencies(self) -> Real:
+        """All frequencies, Hz."""
+        return np.linspace(self.start, self.stop, self.points)
+
+
+def _inertia(description: str, **limits: float) -> Quantity:
+    return Quantity(f"{description} about the centre of gravity", "kg m^2", **limits)  # type: ignore[arg-type]
+
+
+class InertiaTable(Table):
+    """Inertia tensor about the centre of gravity; the off-diagonal entries are the tensor's own elements."""
+
+    xx: Annotated[float, _inertia("moment of inertia xx", above=0.0)]
+    yy: Annotated[float, _inertia("moment of inertia yy", above=0.0)]
+    zz: Annotated[float, _inertia("moment of inertia zz", above=0.0)]
+    xy: Annotated[float, _inertia("tensor element xy")] = 0.0
+    xz: Annotated[float, _inertia("tensor element xz")] = 0.0
+    yz: Annotated[float, _inertia("tensor element yz")] = 0.0
+
+
+class RigidBodyTable(Table):
+    """A rigid casing."""
+
+    kind: Annotated[Literal["rigid_body"], Field(description="Rigid body")]
+    mass: Annotated[float, Quantity("mass", "kg", above=0.0)]
+    inertia: Annotated[InertiaTable, Field(description="Inertia about the centre of gravity")]
+    centre_of_gravity: Annotated[Vector, PLACE.named("centre of gravity")] = (0.0, 0.0, 0.0)
+
+
+COMPONENTS: dict[str, type[GearTrainTable | RigidBodyTable]] = {
+    "gear_train": GearTrainTable,
+    "rigid_body": RigidBodyTable,
+}
+
+
+def _known_kind(value: Any) -> Any:
+    """Refuse a component whose kind is missing or not available."""
+    is_table(value)
+    if "kind" not in value:
+        raise wrong("is missing", f"give the kind of component, {' or '.join(map(show, COMPONENTS))}", "kind")
+    kind = value["kind"]
+    if not isinstance(kind, str) or kind not in COMPONENTS:
+        raise wrong(f"{show(kind)} is not a kind of component", hint(kind, COMPONENTS), "kind")
+    return value
+
+
+ComponentTable = Annotated[
+    GearTrainTable | RigidBodyTable, Field(discriminator="kind"), BeforeValidator(_known_kind)
+]
+
+
+class JointTable(Table):
+    """A bearing or mount, massless, with stiffness and damping."""
+
+    kind: Annotated[str, Choice("kind of joint", ("bearing", "mount"))]
+    between: Annotated[
+        tuple[str, str], Pair("two ends, source and receiver", ("gear_train.input@0.0", "casing"))
+    ]
+    at: Annotated[Vector | None, PLACE.named("place of the joint where no shaft station gives it")] = None
+    stiffness: Annotated[float | Matrix, Impedance("stiffness", "N/m")]
+    damping: Annotated[float | Matrix | None, Impedance("damping", "N s/m")] = None
+    damping_time: Annotated[
+        float | None,
+        Quantity(
+            "time T of the damping C = T K",
+            "s",
+            at_least=0.0,
+            plausible=(0.0, 1.0),
+            slip="did you mean s, not us?",
+        ),
+    ] = None
+
+
+class ExcitationTable(Table):
+    """What drives the machine: the transmission error of a mesh, or a force at a point."""
+
+    mesh: Annotated[str, Text("mesh", "gear_train.mesh")] = ""
+    displacement: Annotated[
+        float,
+        Quantity(
+            "amplitude of the transmission error",
+            "m",
+            above=0.0,
+            plausible=(0.0, 0.01),
+            slip="did you mean m, not um?",
+        ),
+    ] = 1.0e-6
+    point: Annotated[str, Text("driven point", "gear_train.input.pinion")] = ""
+    dof: Annotated[str, Choice("degree of freedom", DOFS)] = ""
+    force: Annotated[float, Quantity("amplitude of the force or moment", "N or N m", above=0.0)] = 1.0
+    at: Annotated[Vector | None, PLACE.named("driven place on a rigid body")] = None
+
+
+class ActuatorTable(Table):
+    """An additional force or moment input."""
+
+    component: Annotated[str, Text("component")]
+    point: Annotated[str | Vector | None, Spot("point", PLACE)] = None
+    dof: Annotated[str, Choice("degree of freedom", DOFS)]
+
+
+class SensorTable(ActuatorTable):
+    """An additional motion output."""
+
+    quantity: Annotated[Quantities, Choice("quantity", get_args(Quantities))] = "velocity"
+
+
+class FileTable(Table):
+    """A model file of Gearpath, in SI units."""
+
+    name: Annotated[str, Text("name of the model", "gearbox")]
+    dofs: Annotated[tuple[str, ...], Dofs("active degrees of freedom")] = DOFS
+    frequency: Annotated[FrequencyTable, Field(description="Frequencies of sweeps")] = FrequencyTable()
+    materials: Annotated[Named[MaterialTable], Field(description="Materials by name", default_factory=dict)]
+    components: Annotated[Named[ComponentTable], Field(description="Components by name")]
+    joints: Annotated[Named[JointTable], Field(description="Bearings and mounts by name")]
+    excitation: Annotated[ExcitationTable, Field(description="What drives the machine")]
+    actuators: Annotated[
+        Named[ActuatorTable], Field(description="Additional inputs by name", default_factory=dict)
+    ]
+    sensors: Annotated[
+        Named[SensorTable], Field(description="Additional outputs by name", default_factory=dict)
+    ]

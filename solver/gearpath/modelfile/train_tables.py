@@ -1,0 +1,100 @@
+"""Tables of the materials and of the gear train: shafts, sections, disks, meshes."""
+
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import BeforeValidator, Field
+
+from .forms import Elements
+from .leaf import is_list, is_table
+from .numbers import Quantity, Row
+from .table import Table
+from .words import Choice, Name, Pair, Text
+
+T = TypeVar("T")
+Named = Annotated[dict[Annotated[str, Name("name")], T], BeforeValidator(is_table)]
+Several = Annotated[tuple[T, ...], BeforeValidator(is_list)]
+Vector = tuple[float, float, float]
+_PLACE = Quantity("coordinate", "m", plausible=(-1e3, 1e3), slip="did you mean m, not mm?")
+
+
+def _length(description: str, longest: float = 100.0) -> Quantity:
+    slip = "did you mean m, not mm?"
+    return Quantity(description, "m", above=0.0, plausible=(0.0, longest), slip=slip)
+
+
+class MaterialTable(Table):
+    """A linear elastic, isotropic material."""
+
+    youngs_modulus: Annotated[
+        float,
+        Quantity("Young's modulus", "Pa", above=0.0, plausible=(1e6, 1e13), slip="did you mean Pa, not GPa?"),
+    ]
+    poisson_ratio: Annotated[float, Quantity("Poisson's ratio", above=-1.0, below=0.5)]
+    density: Annotated[
+        float,
+        Quantity(
+            "density",
+            "kg/m^3",
+            above=0.0,
+            plausible=(10.0, 3e4),
+            slip="did you mean kg/m^3, not g/cm^3 or t/mm^3?",
+        ),
+    ]
+
+
+class SectionTable(Table):
+    """A stretch of shaft of constant round section, in order from the first end."""
+
+    length: Annotated[float, _length("length of the section")]
+    outer: Annotated[float, _length("outer diameter", 10.0)]
+    inner: Annotated[float, Quantity("inner diameter", "m", at_least=0.0)] = 0.0
+
+
+class DiskTable(Table):
+    """A rigid gear body on a shaft."""
+
+    name: Annotated[str, Name("name of the disk")]
+    z: Annotated[float, Quantity("distance of the disk from the shaft's first end", "m", at_least=0.0)]
+    mass: Annotated[float, Quantity("mass", "kg", above=0.0)]
+    diametral_inertia: Annotated[float, Quantity("moment of inertia about a diameter", "kg m^2", above=0.0)]
+    polar_inertia: Annotated[float, Quantity("moment of inertia about the axis", "kg m^2", above=0.0)]
+
+
+class ShaftTable(Table):
+    """A straight shaft along +z; `length` and `diameter`, or `sections`."""
+
+    material: Annotated[str, Text("name of the material", "steel")]
+    origin: Annotated[Vector, Row("place of the first end", _PLACE, 3)]
+    length: Annotated[float | None, _length("length")] = None
+    diameter: Annotated[float | None, _length("diameter", 10.0)] = None
+    sections: Annotated[Several[SectionTable], Field(description="Sections from the first end on")] = ()
+    beam: Annotated[str, Choice("beam theory", ("timoshenko",))] = "timoshenko"
+    shear_coefficient: Annotated[
+        float | None, Quantity("shear coefficient (left out: Cowper's)", above=0.0, at_most=1.0)
+    ] = None
+    elements: Annotated[
+        int | tuple[int, ...],
+        Elements("elements between consecutive stations (ends, section changes, disks, joints)"),
+    ] = 8
+    disks: Annotated[Several[DiskTable], Field(description="Rigid gear bodies on the shaft")] = ()
+
+
+class MeshTable(Table):
+    """A gear mesh along the line of action y."""
+
+    between: Annotated[tuple[str, str], Pair("two gears, shaft.disk", ("input.pinion", "output.wheel"))]
+    stiffness: Annotated[float, Quantity("mesh stiffness", "N/m", above=0.0)]
+    base_radii: Annotated[
+        tuple[float, float], Row("base radii of both gears", _length("base radius", 20.0), 2)
+    ]
+
+
+class GearTrainTable(Table):
+    """Shafts, disks and meshes, solved as one component."""
+
+    kind: Annotated[Literal["gear_train"], Field(description="Gear train")]
+    modal_damping: Annotated[
+        float, Quantity("damping ratio of every elastic mode", at_least=0.0, below=1.0)
+    ] = 0.0
+    shafts: Annotated[Named[ShaftTable], Field(description="Shafts by name")]
+    meshes: Annotated[Named[MeshTable], Field(description="Gear meshes by name", default_factory=dict)]

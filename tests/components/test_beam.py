@@ -1,0 +1,129 @@
+"""The Timoshenko element: static exactness, closed-form frequencies, mass, rigid-body motion."""
+
+import numpy as np
+import pytest
+import scipy.linalg
+from scipy.optimize import brentq
+
+from gearpath.components import DOFS, Material, Section, Shaft
+from gearpath.components.beam import shape_functions, timoshenko_element
+from gearpath.components.dofs import rigid_motion
+from gearpath.components.shaft_mesh import mesh_shaft
+
+STEEL = Material(2.07e11, 0.3, 7850.0)
+KAPPA = 0.886
+
+
+def element(length=0.2, diameter=0.05):
+    section = Section(length, diameter)
+    return section, *timoshenko_element(section, STEEL, length, KAPPA)
+
+
+@pytest.mark.parametrize("diameter", [0.005, 0.05, 0.2])
+def test_one_element_has_the_exact_tip_deflection_of_a_thick_cantilever(diameter):
+    section, K, _ = element(0.2, diameter)
+    E, G, A, I, L = STEEL.youngs_modulus, STEEL.shear_modulus, section.area, section.area_moment, 0.2  # noqa: E741
+    tip = np.linalg.inv(K[6:, 6:])
+    for u, theta, sign in ((0, 4, 1.0), (1, 3, -1.0)):
+        assert tip[u, u] == pytest.approx(L**3 / (3 * E * I) + L / (KAPPA * G * A), rel=1e-10)
+        assert tip[theta, u] == pytest.approx(sign * L**2 / (2 * E * I), rel=1e-10)
+        assert tip[theta, theta] == pytest.approx(L / (E * I), rel=1e-10)
+    assert tip[2, 2] == pytest.approx(L / (E * A), rel=1e-12)
+    assert tip[5, 5] == pytest.approx(L / (G * 2 * I), rel=1e-12)
+
+
+def test_rigid_motion_costs_nothing_and_carries_the_whole_inertia():
+    section, K, M = element()
+    both = np.vstack([rigid_motion(np.array([0.0, 0.0, z])) for z in (-0.1, 0.1)])
+    np.testing.assert_allclose(K @ both, 0.0, atol=1e-9 * abs(K).max())
+    mass = STEEL.density * section.area * 0.2
+    slender = STEEL.density * section.area_moment * 0.2 + mass * 0.2**2 / 12
+    polar = STEEL.density * 2 * section.area_moment * 0.2
+    expected = np.diag([mass, mass, mass, slender, slender, polar])
+    np.testing.assert_allclose(both.T @ M @ both, expected, rtol=1e-12, atol=1e-14)
+
+
+def test_shape_functions_reproduce_the_end_motions():
+    for xi, columns in ((0.0, slice(0, 6)), (1.0, slice(6, 12))):
+        N, _ = shape_functions(xi, 0.3, 0.7)
+        expected = np.zeros((6, 12))
+        expected[:, columns] = np.eye(6)
+        np.testing.assert_allclose(N, expected, atol=1e-15)
+
+
+def test_shape_function_slopes_are_derivatives():
+    step = 1e-6
+    for xi in (0.2, 0.7):
+        _, slope = shape_functions(xi, 0.3, 0.7)
+        ahead, behind = (shape_functions(xi + s, 0.3, 0.7)[0] for s in (step, -step))
+        np.testing.assert_allclose(slope, (ahead - behind) / (2 * step * 0.3), atol=1e-6)
+
+
+def free_free(shaft, plane, elements):
+    mesh = mesh_shaft(Shaft(STEEL, (0, 0, 0), (shaft,), KAPPA, (elements,)), [], plane)
+    values = scipy.linalg.eigh(mesh.stiffness, mesh.mass, eigvals_only=True)
+    return np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi)
+
+
+def exact_timoshenko_free_free(section, length, count):
+    """Natural frequencies (Hz) of the free-free Timoshenko beam from its characteristic determinant.
+
+    The transfer matrix of (w, theta, M, Q) over the length must have a singular force block.
+    """
+    E, G, A, I = STEEL.youngs_modulus, STEEL.shear_modulus, section.area, section.area_moment  # noqa: E741
+
+    def determinant(f):
+        w = 2 * np.pi * f
+        system = np.array(
+            [
+                [0, 1, 0, 1 / (KAPPA * G * A)],
+                [0, 0, 1 / (E * I), 0],
+                [0, -STEEL.density * I * w**2, 0, -1],
+                [-STEEL.density * A * w**2, 0, 0, 0],
+            ]
+        )
+        scale = np.array([1.0, 1.0, 1e5, 1e6])
+        T = scipy.linalg.expm(length * (system * scale[None, :] / scale[:, None]))
+        return np.linalg.det(T[2:, :2])
+
+    grid = np.linspace(50.0, 20000.0, 4000)
+    signs = np.array([determinant(f) for f in grid])
+    crossings = np.flatnonzero(signs[:-1] * signs[1:] < 0)[:count]
+    return np.array([brentq(determinant, grid[k], grid[k + 1], xtol=1e-9) for k in crossings])
+
+
+def test_thick_beam_frequencies_converge_to_the_exact_timoshenko_solution_as_h_squared():
+    section, length = Section(0.25, 0.05), 0.25
+    exact = exact_timoshenko_free_free(section, length, 3)
+    errors = np.array([free_free(section, ("uy", "rx"), n)[2:5] / exact - 1 for n in (16, 32, 64)])
+    assert np.all(abs(errors[-1]) < 2e-3)
+    orders = np.log2(abs(errors[:-1]) / abs(errors[1:]))
+    assert np.all((orders > 1.8) & (orders < 2.2))
+
+
+def test_slender_beam_tends_to_euler_bernoulli():
+    section, length = Section(1.0, 0.004), 1.0
+    beta_l = np.array([4.730040745, 7.853204624, 10.995607838])
+    stiffness = STEEL.youngs_modulus * section.area_moment / (STEEL.density * section.area)
+    exact = (beta_l / length) ** 2 * np.sqrt(stiffness) / (2 * np.pi)
+    np.testing.assert_allclose(free_free(section, ("ux", "ry"), 64)[2:5], exact, rtol=3e-4)
+
+
+def test_axial_and_torsional_frequencies():
+    section, length = Section(0.5, 0.03), 0.5
+    for dof, speed in (("uz", np.sqrt(2.07e11 / 7850)), ("rz", np.sqrt(STEEL.shear_modulus / 7850))):
+        np.testing.assert_allclose(free_free(section, (dof,), 200)[1], speed / (2 * length), rtol=1e-4)
+
+
+def test_a_probe_between_nodes_reads_the_static_deflection_curve():
+    """Between the nodes of a single element the cantilever's cubic and shear line are exact."""
+    section, length, force = Section(0.2, 0.05), 0.2, 1000.0
+    mesh = mesh_shaft(Shaft(STEEL, (0, 0, 0), (section,), KAPPA, (1,)), [], ("uy", "rx"))
+    q = np.zeros(4)
+    q[2:] = np.linalg.solve(mesh.stiffness[2:, 2:], [force, 0.0])
+    z = 0.37 * length
+    E, G, A, I = STEEL.youngs_modulus, STEEL.shear_modulus, section.area, section.area_moment  # noqa: E741
+    expected = force * (z**2 * (3 * length - z) / (6 * E * I) + z / (KAPPA * G * A))
+    assert (mesh.motion(z) @ q)[DOFS.index("uy")] == pytest.approx(expected, rel=1e-10)
+    slope = force * (length * z - z**2 / 2) / (E * I)
+    assert (mesh.motion(z) @ q)[DOFS.index("rx")] == pytest.approx(-slope, rel=1e-10)

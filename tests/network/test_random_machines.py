@@ -1,0 +1,68 @@
+"""Invariants over random gearboxes: synthesis against the direct solution, power balance, passivity, reciprocity."""
+
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from systems import random_gearbox
+
+from gearpath.network.assemble import assemble
+from gearpath.network.power import power_flow
+from gearpath.network.reference import reference_solution
+from gearpath.network.synthesis import Synthesis
+
+machines = st.builds(random_gearbox, st.integers(0, 2**32 - 1), st.integers(1, 8))
+LINES = 2 * np.pi * np.geomspace(20.0, 5000.0, 7)
+
+
+def kinds(network):
+    """Rows of forces and of moments: they have different units and are compared apart."""
+    rotation = np.array([dof[0] == "r" for joint in network.joints for dof in joint.dofs])
+    return [rows for rows in (~rotation, rotation) if rows.any()]
+
+
+@settings(max_examples=200, deadline=None)
+@given(machines)
+def test_synthesis_equals_the_unsynthesised_solution(system):
+    network = assemble(system)
+    modal = network.modal()
+    load = next(item for item in modal.loads if item.name == modal.excitation)
+    solved = Synthesis(modal, [load]).solve(LINES)
+    force = solved.force[:, 0]
+    reference = reference_solution(network, LINES)
+    for rows in kinds(modal):
+        largest = abs(reference.force[rows]).max(axis=0)
+        deviation = abs(force - reference.force)[rows].max(axis=0)
+        assert np.all(deviation <= 1e-9 * largest + 1e-300)
+    flow = power_flow(modal, LINES)
+    # where the paths nearly cancel, the net is judged by what flows; and active power that is a small rest of a large
+    # apparent power (hardly damped, below all resonances) keeps as many digits less as it is smaller
+    gross = abs(flow.path_power).sum(axis=0) / flow.input_power
+    drive = LINES**2 if load.is_transmission_error else 1.0
+    apparent = 0.5 * abs(load.column @ solved.elastic[:, 0]) * drive / flow.input_power
+    limit = 1e-8 * np.maximum(abs(reference.alpha), 1e-3 * gross) + 1e-12 * apparent
+    assert np.all(abs(flow.share() - reference.alpha) <= limit)
+
+
+@settings(max_examples=200, deadline=None)
+@given(machines)
+def test_power_balance_and_passivity(system):
+    flow = power_flow(assemble(system).modal(), LINES)
+    np.testing.assert_allclose(flow.dissipated_power.sum(axis=0), flow.input_power, rtol=1e-8)
+    assert np.all(flow.dissipated_power >= 0.0)
+    assert np.all(flow.transmitted_power >= -1e-10 * flow.input_power)
+    assert np.all(flow.share() < 1.0 + 1e-10)
+
+
+@settings(max_examples=100, deadline=None)
+@given(machines)
+def test_reciprocity_of_the_coupled_machine(system):
+    """Velocity at j per unit force at i = velocity at i per unit force at j, across the joints."""
+    modal = assemble(system).modal()
+    rng = np.random.default_rng(0)
+    columns = rng.normal(size=(2, modal.eigenvalues.size))
+    loads = [replace(modal.loads[-1], column=c, mesh_displacement=None) for c in columns]
+    velocity = Synthesis(modal, loads).solve(LINES).velocity
+    there, back = columns[1] @ velocity[:, 0], columns[0] @ velocity[:, 1]
+    assert np.all(abs(there - back) <= 1e-10 * np.maximum(abs(there), abs(back)) + 1e-14 * abs(velocity).max())
