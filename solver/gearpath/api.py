@@ -19,15 +19,19 @@ if TYPE_CHECKING:
     import control
     import xarray as xr
 
+    from .fmu.checks import ValidationReport
+
 __all__ = [
     "Model",
     "amplitude",
+    "export_fmu",
     "frequency_response",
     "load",
     "modal_network",
     "natural_frequencies",
     "power_flow",
     "state_space",
+    "validate_fmu",
 ]
 
 Progress = Callable[[int], None]
@@ -54,7 +58,7 @@ def power_flow(
     `path_alpha`, `force` (acts on the receiver), `velocity_source`, `velocity_receiver`. Raises InputError for
     frequencies that are not finite and positive.
     """
-    from .study.labelled import labelled_power_flow
+    from .results.labelled import labelled_power_flow
 
     f = model.frequencies() if frequencies_hz is None else frequencies_hz
     return labelled_power_flow(modal_network(model), f, amplitude(model), progress)
@@ -71,7 +75,7 @@ def frequency_response(
     None stands for all linear outputs and all inputs. Raises InputError for a name that does not exist, with the
     closest one that does.
     """
-    from .study.labelled import labelled_response
+    from .results.labelled import labelled_response
 
     f = model.frequencies() if frequencies_hz is None else frequencies_hz
     return labelled_response(modal_network(model), f, outputs, inputs)
@@ -94,7 +98,34 @@ def natural_frequencies(model: Model) -> Real:
 
 
 def export_fmu(model: Model, path: str | Path, fmi: str = "2.0", kind: str = "native") -> Path:
-    """Write the model as an FMU and return its path; see `gearpath.fmu`."""
+    """Write the model as an FMU and return its path.
+
+    kind "native" runs without Python on every platform; kind "python" holds the whole solver, with the design
+    parameters as well, and needs Python with numpy and scipy in the host. Raises InputError for an unknown kind or
+    version and for a path that cannot be written.
+    """
     from .fmu.export import export
 
     return export(model.system, Path(path), fmi=fmi, kind=kind, frequency=model.frequency.start)
+
+
+def validate_fmu(
+    path: str | Path,
+    model: Model,
+    *,
+    message: Callable[[str], None] = lambda _: None,
+    advance: Callable[[float], None] = lambda _: None,
+) -> ValidationReport:
+    """Check an FMU against the model that it was exported from: every check with its figure, and `report.passed`.
+
+    The standard (fmpy's validator), frequency-domain outputs against the power flow, swept sine against
+    python-control, sine steady state against the mobility synthesis, energy balance, agreement of both kinds.
+    `message` is told what begins and `advance` which part of the work was done. Raises InputError where the file is
+    not an FMU.
+    """
+    from .fmu.validation import validate
+
+    frequency = model.frequency
+    return validate(
+        Path(path), model.system, (frequency.start, frequency.stop), message=message, advance=advance
+    )

@@ -1,1 +1,1 @@
-"""Labelled results of the solver: power flow and frequency responses as xarray objects."""
+"""Studies of a model: frequency sweeps."""

@@ -1,0 +1,158 @@
+"""The command line: sweep, fmu, validate, report, schema.
+
+Exit codes: 0 done, 1 a check failed, 2 bad input.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from . import __version__, console
+
+app = typer.Typer(
+    name="gearpath",
+    help="Structure-borne noise power flow in gearboxes, and the same physics as FMUs.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+ModelPath = Annotated[Path, typer.Argument(metavar="MODEL", help="Model file (TOML), such as models/gearbox.toml.")]
+Settings = Annotated[
+    list[str],
+    typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the model, such as joints.mount_1.damping=600."),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document for machines instead of text.")]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"gearpath {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")] = False,
+) -> None:
+    """Structure-borne noise power flow in gearboxes, and the same physics as FMUs."""
+
+
+@app.command()
+def sweep(
+    model: ModelPath,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write all lines to this .csv file.")] = None,
+    check: Annotated[bool, typer.Option("--check", help="Compare with the unsynthesised reference solution.")] = False,
+    set_: Settings = [],  # noqa: B006 - typer reads the default
+    json: Json = False,
+) -> None:
+    """Compute the power flow over the model's frequencies: ratios by path and band."""
+    from .study import sweeping
+
+    passed = sweeping.run(console.load_with(model, set_), output, check, json)
+    raise typer.Exit(console.DONE if passed else console.CHECK_FAILED)
+
+
+@app.command()
+def fmu(
+    model: ModelPath,
+    output: Annotated[Path, typer.Option("--output", "-o", help="The FMU to write.")],
+    kind: Annotated[str, typer.Option(help="native (runs without Python) or python (design parameters too).")] = "native",
+    fmi: Annotated[str, typer.Option(help="Version of FMI.")] = "2.0",
+    set_: Settings = [],  # noqa: B006
+    json: Json = False,
+) -> None:
+    """Export the model as an FMU."""
+    from . import api
+
+    path = api.export_fmu(console.load_with(model, set_), output, fmi=fmi, kind=kind)
+    if json:
+        console.print_json({"fmu": path, "kind": kind, "fmi": fmi, "bytes": path.stat().st_size})
+    else:
+        console.out.print(f"wrote {path} ({kind} kind, FMI {fmi}, {path.stat().st_size / 1e3:.0f} kB)", markup=False)
+
+
+@app.command()
+def validate(
+    fmu: Annotated[Path, typer.Argument(metavar="FMU", help="The FMU to check.")],
+    model: Annotated[Path, typer.Argument(metavar="MODEL", help="The model file that it was exported from.")],
+    set_: Settings = [],  # noqa: B006
+    json: Json = False,
+) -> None:
+    """Check an FMU against its model; every check prints its figure and its limit."""
+    from .job import validate_one
+
+    report = validate_one(fmu, console.load_with(model, set_), quiet=json)
+    if json:
+        console.print_json(console.report_as_dict(report))
+    else:
+        console.print_report(report)
+    raise typer.Exit(console.DONE if report.passed else console.CHECK_FAILED)
+
+
+@app.command()
+def report(
+    model: ModelPath,
+    output: Annotated[Path, typer.Option("--output", "-o", help="The page to write.")] = Path("report.html"),
+    fmu: Annotated[list[Path], typer.Option("--fmu", help="Validate this FMU and show the result.")] = [],  # noqa: B006
+    set_: Settings = [],  # noqa: B006
+    json: Json = False,
+) -> None:
+    """Write the report of a model as one HTML page."""
+    from .job import validate_one
+    from .report import write_report
+
+    loaded = console.load_with(model, set_)
+    reports = [validate_one(path, loaded, quiet=json) for path in fmu]
+    written = write_report(loaded, output, validations=reports)
+    passed = all(item.passed for item in reports)
+    if json:
+        console.print_json({"report": written, "passed": passed, "fmus": [console.report_as_dict(r) for r in reports]})
+    else:
+        console.out.print(f"wrote {written}", markup=False)
+    raise typer.Exit(console.DONE if passed else console.CHECK_FAILED)
+
+
+@app.command()
+def schema(
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write it here instead of to stdout.")] = None,
+) -> None:
+    """Print the JSON schema of model files, for editors."""
+    from .files import write_text
+    from .modelfile.schema import schema_text
+
+    if output is None:
+        sys.stdout.write(schema_text())
+    else:
+        write_text(output, schema_text())
+
+
+@app.command()
+def build(
+    model: ModelPath,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Write one FMU here, instead of FMUs and report into build/.")
+    ] = None,
+    kind: Annotated[str, typer.Option(help="Kind of that one FMU: native or python.")] = "native",
+    fmi: Annotated[str, typer.Option(help="Version of FMI of that one FMU.")] = "2.0",
+    set_: Settings = [],  # noqa: B006
+) -> None:
+    """The main job: FMUs of both kinds, their validation and a report, into build/NAME/ of the model file NAME.toml."""
+    from . import job
+
+    loaded = console.load_with(model, set_)
+    if output is not None:
+        job.export_one(loaded, output, kind, fmi)
+        return
+    passed = job.build(loaded, Path("build") / model.stem)
+    raise typer.Exit(console.DONE if passed else console.CHECK_FAILED)
+
+
+def main() -> None:
+    """Entry point: no tracebacks for mistakes in the input."""
+    with console.mistakes_explained():
+        app()

@@ -1,0 +1,129 @@
+"""The native FMU: a generic C runtime, and the model as data."""
+
+import hashlib
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from ..network.modal import ModalNetwork
+from . import runtime_files
+from .binary import model_file, payload
+from .description import Experiment, model_description
+from .package import write_fmu
+from .variables import variable_table
+
+_PLACEHOLDER = "{00000000-0000-0000-0000-000000000000}"
+
+
+def export_native(
+    network: ModalNetwork,
+    path: Path,
+    *,
+    model_identifier: str,
+    description: str,
+    frequency: float,
+    start_time: float = 0.0,
+    stop_time: float = 0.1,
+    step_size: float = 1e-5,
+    version: str,
+    extra_files: Mapping[str, bytes] | None = None,
+) -> Path:
+    """Write the FMI 2.0 co-simulation FMU of `network` to `path`, for all platforms; return the path.
+
+    `frequency` (Hz) is the start value of the input of that name; times in s; `extra_files` go into the FMU
+    under their names. The same arguments give the same bytes; the GUID is a hash of model and description.
+
+    Raises:
+        InputError: the network, a name or a time cannot be used.
+        GearpathError: the compiled runtime is missing.
+    """
+    if not re.fullmatch(r"[A-Za-z_]\w*", model_identifier, re.ASCII):
+        raise InputError(
+            f"the model identifier {model_identifier!r} is not a C name; use letters, digits and underscores"
+        )
+    if not (
+        np.isfinite([start_time, stop_time, step_size]).all() and start_time < stop_time and step_size > 0
+    ):
+        raise InputError(
+            f"start {start_time} s, stop {stop_time} s and step {step_size} s are no experiment; "
+            "start must lie before stop, and the step be positive"
+        )
+    _check_network(network)
+    variables = variable_table(network, frequency)
+    binaries, sources = runtime_files.binaries(), runtime_files.sources()
+    content = payload(network, variables, frequency)
+
+    def xml(guid: str) -> bytes:
+        return model_description(
+            variables,
+            name=network.name,
+            model_identifier=model_identifier,
+            description=description,
+            guid=guid,
+            version=version,
+            experiment=Experiment(float(start_time), float(stop_time), float(step_size)),
+            sources=[name for name in sorted(sources) if name.endswith(".c")],
+        )
+
+    guid = content_guid(content, xml(_PLACEHOLDER))
+    files = {
+        "modelDescription.xml": xml(guid),
+        "resources/model.bin": model_file(guid, content),
+        "documentation/licenses/license.txt": runtime_files.licence(),
+        **{f"sources/{name}": text for name, text in sources.items()},
+        **{
+            f"binaries/{folder}/{model_identifier}{runtime_files.PLATFORMS[folder]}": library
+            for folder, library in binaries.items()
+        },
+    }
+    for name, extra in (extra_files or {}).items():
+        if name in files or name.startswith("/") or "\\" in name or ".." in name.split("/"):
+            raise InputError(f"{name!r} cannot be added to the FMU; it exists already or is no relative path")
+        files[name] = extra
+    return write_fmu(path, files)
+
+
+def content_guid(*parts: bytes) -> str:
+    """A GUID that is a hash of the content, {8-4-4-4-12} hexadecimal digits."""
+    digest = hashlib.sha256(b"".join(hashlib.sha256(part).digest() for part in parts)).hexdigest()
+    return "{" + "-".join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32])) + "}"
+
+
+def _check_network(network: ModalNetwork) -> None:
+    """Refuse what the runtime could not compute."""
+    if not network.joints or not network.loads:
+        raise InputError(f"{network.name}: an FMU needs at least one joint and one load")
+    if (network.eigenvalues < 0).any():
+        raise InputError(f"{network.name}: an eigenvalue is negative, so that the model is unstable")
+    for name, ratio in network.modal_damping.items():
+        if not 0 <= ratio < 1:
+            raise InputError(
+                f"{name}.modal_damping: {ratio} is no damping ratio; give at least 0 and less than 1"
+            )
+    for joint in network.joints:
+        for what, matrix in (("stiffness", joint.stiffness), ("damping", joint.damping)):
+            scale = np.abs(matrix).max(initial=0.0)
+            if np.abs(matrix - matrix.T).max() > 1e-10 * scale:
+                raise InputError(f"{joint.name}.{what}: the matrix is not symmetric; make it so")
+            # in units of its own diagonal, so that N/m and N m/rad count alike
+            unit = np.sqrt(np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0))
+            if np.linalg.eigvalsh(0.5 * (matrix + matrix.T) / np.outer(unit, unit)).min() < -1e-12:
+                raise InputError(f"{joint.name}.{what}: the matrix is not positive semidefinite; correct it")
+    # The acceleration of a row that a mesh moves directly (row . X d) would need the derivative of the input.
+    frequencies = np.sqrt(network.eigenvalues)
+    for output in network.outputs:
+        if output.quantity != "acceleration" or output.row is None:
+            continue
+        for load in network.loads:
+            if load.mesh_displacement is None:
+                continue
+            for component in network.modal_damping:
+                terms = (output.row * frequencies * load.mesh_displacement)[network.components[component]]
+                if abs(terms.sum()) > 1e-9 * np.abs(terms).sum():
+                    raise InputError(
+                        f"{output.name}: this acceleration depends on the derivative of {load.name}, which "
+                        "an FMU does not get; observe its velocity, or the acceleration of another component"
+                    )

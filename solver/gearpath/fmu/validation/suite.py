@@ -1,0 +1,170 @@
+"""All checks of one FMU, in order of cost."""
+
+from __future__ import annotations
+
+import tempfile
+import zipfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import InputError, MissingExtraError
+from ...network.assemble import assemble
+from ...network.modal import ModalNetwork
+from ...network.records import Load
+from ...network.system import System
+from ...network.time_twin import time_twin
+from ...numerics.arrays import Real
+from ..checks import Check, Comparison, ValidationReport
+from ..export import export
+from ..simulation import running
+from . import chirp, spectrum, tones
+
+Message = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a check may deviate."""
+
+    chirp: float = 1e-10
+    spectrum: float = 1e-9
+    kinds: float = 1e-9
+    steady: float = 1e-7
+    energy: float = 1e-6
+
+
+def validate(
+    path: Path,
+    system: System,
+    band: tuple[float, float],
+    *,
+    message: Message = lambda _: None,
+    advance: Callable[[float], None] = lambda _: None,
+) -> ValidationReport:
+    """Check the FMU at `path` against the model that it was made from, over the band (Hz).
+
+    `message` is told what begins, `advance` the part of the whole work that was done. Raises InputError where the
+    file is no FMU.
+    """
+    kind = kind_of(path)
+    network = assemble(system).modal()
+    limits = Limits()
+    message("standard: fmpy's validator")
+    checks = [standard_check(path)]
+    advance(0.05)
+    with running(path) as fmu:
+        fmu.start()
+        message("frequency-domain outputs against the power flow")
+        checks.append(spectrum.spectrum_check(fmu, network, band, limits.spectrum))
+        checks.append(spectrum.exchange_check(fmu, network, band, limits.spectrum))
+        advance(0.05)
+        message("swept sine against python-control")
+        inputs = chirp.chirps(network, *band)
+        found = chirp.run_chirps(fmu, network, inputs, lambda n: advance(0.1 * n / chirp.STEPS))
+    expected = chirp.forced_response(network, inputs)
+    checks.append(chirp.chirp_check(found, expected, limits.chirp))
+    other = "python" if kind == "native" else "native"
+    message(f"{kind} against {other} kind")
+    checks.append(_kinds_check(system, network, band, inputs, found, other, limits.kinds))
+    advance(0.15)
+    message("sine steady state against the mobility synthesis")
+    steady, comparisons = _steady_checks(path, network, band, limits, lambda part: advance(0.65 * part))
+    return ValidationReport(path, network.name, kind, (*checks, *steady), tuple(comparisons))
+
+
+def kind_of(path: Path) -> str:
+    """"native" or "python"; raises InputError where the file is not an FMU of Gearpath."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            names = archive.namelist()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}); give the path of an FMU") from error
+    except zipfile.BadZipFile as error:
+        raise InputError(f"{path}: is not an FMU (not a zip archive); export one with gearpath fmu") from error
+    if "modelDescription.xml" not in names:
+        raise InputError(f"{path}: is not an FMU (no modelDescription.xml); export one with gearpath fmu")
+    return "native" if "resources/model.bin" in names else "python"
+
+
+def standard_check(path: Path) -> Check:
+    """fmpy's validation of the modelDescription: number of problems."""
+    try:
+        from fmpy.validation import validate_fmu
+    except ImportError as error:
+        raise MissingExtraError("fmpy", "fmu") from error
+    problems = validate_fmu(str(path))
+    what = "problems found by fmpy's validator" + (": " + "; ".join(map(str, problems)) if problems else "")
+    return Check("conformance to FMI 2.0", float(len(problems)), 0.0, what)
+
+
+def _kinds_check(
+    system: System,
+    network: ModalNetwork,
+    band: tuple[float, float],
+    inputs: dict[str, Real],
+    found: dict[str, Real],
+    other: str,
+    limit: float,
+) -> Check:
+    """The other kind of FMU, exported from the same model, simulated and compared."""
+    steps = 1000
+    with tempfile.TemporaryDirectory(prefix="gearpath-") as folder:
+        twin = export(system, Path(folder) / "twin.fmu", kind=other, frequency=band[0])
+        with running(twin) as fmu:
+            fmu.start()
+            short = {name: signal[: steps + 1] for name, signal in inputs.items()}
+            histories = chirp.run_chirps(fmu, network, short, lambda _: None)
+            deviation = chirp.largest_deviation(
+                histories, {name: values[: steps + 1] for name, values in found.items()}
+            )
+            deviation = max(deviation, spectrum.spectrum_check(fmu, network, band, limit).figure)
+    return Check(
+        f"agreement with the {other} kind",
+        deviation,
+        limit,
+        f"all outputs over {steps} steps and the frequency-domain outputs",
+    )
+
+
+def _steady_checks(
+    path: Path,
+    network: ModalNetwork,
+    band: tuple[float, float],
+    limits: Limits,
+    advance: Callable[[float], None],
+) -> tuple[list[Check], list[Comparison]]:
+    """Steady state and energy balance; two runs, one with each kind of excitation that the model has."""
+    loads = _driven(network)
+    frequency = tones.tones(*band)
+    step = 1.0 / (tones.BASE * np.ceil(40.0 * frequency[-1] / tones.BASE))
+    slowest = -float(np.linalg.eigvals(time_twin(network).A).real.max())
+    settle = float(np.clip(18.0 / slowest, 0.2, 3.0)) if slowest > 0 else 3.0
+    settle = step * np.ceil(settle / step)
+    left = 1e-4 * float(np.exp(-0.5 * max(slowest, 0.0) * settle))  # of what the smooth ramp may still excite
+    total = len(loads) * (settle + 1.0 / tones.BASE) / step
+    outputs = tuple(o.name for o in network.outputs)
+    checks: list[Check] = []
+    comparisons: list[Comparison] = []
+    for load in loads:
+        with running(path) as fmu:
+            fmu.start()
+            steady = tones.run_tones(fmu, load, frequency, outputs, step, settle, lambda n: advance(n / total))
+            limit = max(limits.steady, left)
+            check, compared = tones.steady_state_check(network, load, steady, fmu.interpolates, limit)
+            checks.append(check)
+            if load.name == network.excitation:
+                comparisons = compared
+            if f"{load.name.removesuffix('.force')}.velocity" in outputs:
+                checks += tones.energy_checks(network, load, steady, fmu.interpolates, max(limits.energy, left))
+    return checks, comparisons
+
+
+def _driven(network: ModalNetwork) -> list[Load]:
+    """The excitation of the model, and the force of the first mesh, whose velocity is an output."""
+    loads = [load for load in network.loads if load.name == network.excitation]
+    velocities = {o.name for o in network.outputs}
+    meshes = [load for load in network.loads if load.name.removesuffix(".force") + ".velocity" in velocities]
+    return loads + [load for load in meshes[:1] if load not in loads]

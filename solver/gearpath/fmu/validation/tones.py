@@ -1,0 +1,169 @@
+"""Sine steady state of the running FMU against the mobility synthesis, and the energy balance of its histories.
+
+Ten frequencies at once: the machine is linear, so the response to a sum of tones is the sum of the responses. All
+tones are multiples of one base frequency and are switched on so smoothly that no resonance rings; after the ramp one
+base period is recorded, over which sums of samples are exact Fourier integrals and exact mean powers.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...network.modal import ModalNetwork
+from ...network.power import power_flow
+from ...network.records import Load, Output
+from ...network.response import frequency_response
+from ...network.time_twin import time_twin
+from ...numerics.arrays import Complex, Real
+from ..checks import Check, Comparison
+from ..simulation import RunningFmu
+
+BASE = 10.0  # Hz: all tones are multiples
+_TONES = 10
+_IMAGES = 20  # of the sampling frequency, on either side
+
+
+@dataclass(frozen=True)
+class Steady:
+    """Recorded base period of a run with tones."""
+
+    frequency: Real  # (k,), Hz
+    amplitude: Complex  # (k,), of the input
+    outputs: tuple[str, ...]
+    record: Real  # (samples, outputs), one base period
+    step: float
+
+    def phasors(self) -> Complex:
+        """Fourier coefficients of every output at the tones, (k, outputs)."""
+        samples = len(self.record)
+        t = self.step * np.arange(samples)
+        kernel = np.exp(-2j * np.pi * self.frequency[:, None] * t)
+        return np.asarray(2.0 / samples * kernel @ self.record)
+
+    def column(self, name: str) -> Real:
+        """History of one output."""
+        return np.asarray(self.record[:, self.outputs.index(name)])
+
+
+def tones(start: float, stop: float) -> Real:
+    """Ten multiples of the base frequency spread over the band evenly on a logarithmic scale, Hz."""
+    wanted = np.geomspace(max(start, BASE), max(stop, 2.0 * _TONES * BASE), _TONES)
+    count = np.maximum(np.round(wanted / BASE), 1)
+    for k in range(1, _TONES):
+        count[k] = max(count[k], count[k - 1] + 1)
+    return np.asarray(count * BASE)
+
+
+def smooth_ramp(t: Real, duration: float) -> Real:
+    """0 before, 1 after `duration`, infinitely differentiable: its spectrum falls faster than any power."""
+    s = np.clip(t / duration, 0.0, 1.0)
+    with np.errstate(divide="ignore", over="ignore"):
+        rise, rest = np.exp(-1.0 / s), np.exp(-1.0 / (1.0 - s))
+    return np.asarray(rise / (rise + rest))
+
+
+def run_tones(
+    fmu: RunningFmu,
+    load: Load,
+    frequency: Real,
+    outputs: tuple[str, ...],
+    step: float,
+    settle: float,
+    progress: Callable[[int], None],
+) -> Steady:
+    """Simulate the tones of equal drive F_e (N, or the load's own unit) until they are steady."""
+    amplitude = np.full(len(frequency), 1.0 + 0.0j)
+    if load.is_transmission_error:
+        amplitude = amplitude / (load.equivalent_mass * (2 * np.pi * frequency) ** 2)
+    amplitude = amplitude * np.exp(1j * np.arange(len(frequency)) ** 2)  # spread phases: no common peak
+    first, samples = round(settle / step), round(1.0 / (BASE * step))
+    t = step * np.arange(first + samples)
+    u = np.zeros(len(t))
+    for f, a in zip(frequency, amplitude):
+        u += np.real(a * np.exp(2j * np.pi * f * (t - t[first])))
+    u *= smooth_ramp(t, settle / 2.0)
+    record = fmu.run(
+        {load.name: u}, step, outputs, record_from=first, interpolate=fmu.interpolates, progress=progress
+    )
+    return Steady(frequency, amplitude, outputs, record, step)
+
+
+def hold_factor(frequency: Real, step: float, interpolates: bool) -> Complex:
+    """What sampling the input does to a tone: sinc^2 of a linear, sinc and half a step's delay of a held one."""
+    x = np.pi * frequency * step
+    if interpolates:
+        return np.asarray((np.sin(x) / x) ** 2 + 0j)
+    return np.asarray(np.sin(x) / x * np.exp(-1j * x))
+
+
+def sampled_response(
+    network: ModalNetwork, load: Load, outputs: Sequence[Output], frequency: Real, step: float, interpolates: bool
+) -> Complex:
+    """What a simulation that is exact for its held or linear input must find at the samples, (k, outputs).
+
+    The input between the samples is the tone and its images at f + m/h, each weighted by `hold_factor`; every image
+    passes the structure at its own frequency (the synthesis), and all meet in the samples. The sum converges fast once
+    the transfers' limit at high frequency, D + C B/(i w), is taken out of it: sampled, that limit has a closed form.
+    """
+    twin = time_twin(network, outputs, [load])
+    D, slope = twin.D[:, 0], (twin.C @ twin.B)[:, 0]
+    z = np.exp(2j * np.pi * frequency * step)
+    integrator = step / (z - 1.0) * ((z + 1.0) / 2.0 if interpolates else 1.0)
+    total = D + integrator[:, None] * slope
+    for m in range(-_IMAGES, _IMAGES + 1):
+        image = frequency + m / step
+        H = frequency_response(network, 2 * np.pi * abs(image), outputs, [load])[:, :, 0]
+        H = np.where(image[:, None] > 0.0, H, H.conj())
+        limit = D + slope / (2j * np.pi * image[:, None])
+        total += hold_factor(image, step, interpolates)[:, None] * (H - limit)
+    return np.asarray(total)
+
+
+def steady_state_check(
+    network: ModalNetwork, load: Load, steady: Steady, interpolates: bool, limit: float
+) -> tuple[Check, list[Comparison]]:
+    """Transfers of the simulated steady state against the synthesis, all linear outputs."""
+    linear = [o for o in network.outputs if o.quantity != "power" and o.name in steady.outputs]
+    columns = [steady.outputs.index(o.name) for o in linear]
+    simulated = steady.phasors()[:, columns] / steady.amplitude[:, None]
+    expected = sampled_response(network, load, linear, steady.frequency, steady.step, interpolates)
+    exact = frequency_response(network, 2 * np.pi * steady.frequency, linear, [load])[:, :, 0]
+    # every tone drives with the same force, and each output is judged by its own largest response to them
+    drive = abs(steady.amplitude)[:, None]
+    deviation = abs(simulated - expected) * drive / (abs(expected) * drive).max(axis=0)
+    shown = simulated / hold_factor(steady.frequency, steady.step, interpolates)[:, None]
+    comparisons = [
+        Comparison(o.name, f"{o.unit} per {load.unit}", steady.frequency, shown[:, k], steady.frequency, exact[:, k])
+        for k, o in enumerate(linear)
+    ]
+    what = (
+        f"against the mobility synthesis: {len(linear)} outputs at {len(steady.frequency)} frequencies, "
+        "relative to each output's largest response"
+    )
+    return Check(f"sine steady state, {load.name}", float(deviation.max()), limit, what), comparisons
+
+
+def energy_checks(network: ModalNetwork, load: Load, steady: Steady, interpolates: bool, limit: float) -> list[Check]:
+    """Mean powers from the simulated histories: in at the mesh, out through the paths, against all that is lost."""
+    omega = 2 * np.pi * steady.frequency
+    drive = steady.amplitude * hold_factor(steady.frequency, steady.step, interpolates)
+    velocity = steady.phasors()[:, steady.outputs.index(load.name.removesuffix(".force") + ".velocity")]
+    put_in = 0.5 * float(np.real(np.vdot(drive, velocity)))
+    through = sum(float(np.mean(steady.column(f"{name}.power"))) for name in network.paths)
+    flow = power_flow(replace(network, excitation=load.name), omega)
+    dissipated, transmitted = abs(drive) ** 2 @ flow.dissipated_power.sum(axis=0), abs(drive) ** 2 @ flow.transmitted_power
+    return [
+        Check(
+            "energy balance: input",
+            float(abs(put_in / dissipated - 1.0)),
+            limit,
+            f"mean power at {load.name} in the histories ({put_in:.4g} W) against the power lost in all elements",
+        ),
+        Check(
+            "energy balance: paths",
+            float(abs(through - transmitted) / dissipated),
+            limit,
+            f"mean power through all paths in the histories ({through:.4g} W) against the synthesis, part of the input",
+        ),
+    ]

@@ -1,0 +1,184 @@
+"""The model as tables: components, joints with their matrices and units, excitation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+
+from markupsafe import Markup
+
+from ..components import GearTrain
+from ..components.dofs import is_rotation
+from ..joints import Joint, Port
+from ..joints.joint import Matrix
+from ..network.assemble import joint_place
+from ..network.system import MeshExcitation, System
+from .table import Table, table
+from .wording import given, listed, quantity
+
+
+def model_tables(system: System) -> list[Table]:
+    """All tables of the model's data; those without rows are left out."""
+    every = [
+        component_table(system),
+        shaft_table(system),
+        disk_table(system),
+        mesh_table(system),
+        matrix_table(system),
+        place_table(system),
+        signal_table(system),
+    ]
+    return [item for item in every if any(group.rows for group in item.groups)]
+
+
+def component_table(system: System) -> Table:
+    """Every component with its scalar data."""
+    rows = [[name, _kind(item), "; ".join(_scalars(item))] for name, item in system.components.items()]
+    return table("Components (SI units)", ["component", "kind", "data"], rows, text=3)
+
+
+def shaft_table(system: System) -> Table:
+    """Shafts of all gear trains."""
+    rows = []
+    for train, part in _trains(system):
+        for name, shaft in part.shafts.items():
+            bores = [
+                f"{given(s.outer)}" + (f" / {given(s.inner)}" if s.inner else "") for s in shaft.sections
+            ]
+            rows.append(
+                [
+                    f"{train}.{name}",
+                    shaft.beam,
+                    given(shaft.length),
+                    ", ".join(dict.fromkeys(bores)),
+                    "(" + ", ".join(given(x) for x in shaft.origin) + ")",
+                    " + ".join(str(count) for count in shaft.elements),
+                    given(shaft.material.youngs_modulus),
+                    given(shaft.material.poisson_ratio),
+                    given(shaft.material.density),
+                    given(shaft.shear_coefficient),
+                ]
+            )
+    head = ["shaft", "beam", "length, m", "diameter (bore), m", "first end (x, y, z), m", "elements"]
+    return table("Shafts", [*head, "E, Pa", "ν", "ρ, kg/m³", "κ"], rows, text=2)
+
+
+def disk_table(system: System) -> Table:
+    """Gear bodies."""
+    rows = [
+        [f"{train}.{name}.{disk.name}"]
+        + [given(x) for x in (disk.z, disk.mass, disk.diametral_inertia, disk.polar_inertia)]
+        for train, part in _trains(system)
+        for name, shaft in part.shafts.items()
+        for disk in shaft.disks
+    ]
+    head = ["disk", "z on the shaft, m", "mass, kg", "diametral inertia, kg m²", "polar inertia, kg m²"]
+    return table("Gear bodies", head, rows)
+
+
+def mesh_table(system: System) -> Table:
+    """Gear meshes."""
+    rows = [
+        [f"{train}.{name}", " – ".join(".".join(gear) for gear in mesh.between), given(mesh.stiffness)]
+        + [" / ".join(given(r) for r in mesh.base_radii)]
+        for train, part in _trains(system)
+        for name, mesh in part.meshes.items()
+    ]
+    return table("Gear meshes", ["mesh", "between", "stiffness, N/m", "base radii, m"], rows, text=2)
+
+
+def matrix_table(system: System) -> Table:
+    """Joints with their stiffness and damping; joints with equal matrices share a row."""
+    alike: dict[tuple[object, ...], list[str]] = {}
+    for name, joint in system.joints.items():
+        alike.setdefault((joint.kind, joint.dofs, joint.stiffness, joint.damping), []).append(name)
+    rows = []
+    for names in alike.values():
+        joint = system.joints[names[0]]
+        rows.append(
+            [listed(names), joint.kind, _matrix(joint, joint.stiffness, False), _matrix(joint, joint.damping, True)]
+        )
+    return table("Joints: stiffness and damping", ["joints", "kind", "stiffness K", "damping C"], rows, text=4)
+
+
+def place_table(system: System) -> Table:
+    """Where every joint sits; its force acts on the second port."""
+    rows = []
+    for name, joint in system.joints.items():
+        place = joint_place(system, joint)
+        where = "–" if place is None else "(" + ", ".join(given(x) for x in place) + ")"
+        rows.append([name, *(port_name(port) for port in joint.between), where])
+    head = ["joint", "from (source)", "to (receiver)", "position (x, y, z), m"]
+    return table("Joints: where they sit", head, rows, text=3)
+
+
+def signal_table(system: System) -> Table:
+    """Additional actuators and sensors."""
+    rows = [["actuators." + name, "force", f"{port_name(a.port)}.{a.dof}"] for name, a in system.actuators.items()]
+    rows += [["sensors." + name, s.quantity, f"{port_name(s.port)}.{s.dof}"] for name, s in system.sensors.items()]
+    return table("Actuators and sensors", ["signal", "quantity", "where"], rows, text=3)
+
+
+def excitation_words(system: System) -> str:
+    """The excitation in words, with its amplitude."""
+    item = system.excitation
+    if isinstance(item, MeshExcitation):
+        size = quantity(item.displacement, "m")
+        return f"a transmission error of {size} (peak) in the mesh {item.component}.{item.mesh}"
+    unit = "N m" if is_rotation(item.dof) else "N"
+    noun = "moment" if is_rotation(item.dof) else "force"
+    return f"a {noun} of {quantity(item.force, unit)} (peak) on {port_name(item.port)} along {item.dof}"
+
+
+def port_name(port: Port) -> str:
+    """A port as the model file writes it, such as `gear_train.input@0.25`."""
+    if port.shaft is None:
+        return port.component
+    place = f".{port.disk}" if port.disk is not None else f"@{port.z}"
+    return f"{port.component}.{port.shaft}{place}"
+
+
+def matrix_unit(row: str, column: str, damping: bool) -> str:
+    """Unit of the entry of a joint matrix, symmetric: N/m, N/rad, N m/rad; with seconds for damping."""
+    turns = is_rotation(row) + is_rotation(column)
+    force, motion = ("N", "N", "N m")[turns], ("m", "rad", "rad")[turns]
+    return f"{force} s/{motion}" if damping else f"{force}/{motion}"
+
+
+def _matrix(joint: Joint, matrix: Matrix, damping: bool) -> Markup:
+    head = Markup("").join(Markup('<th scope="col">{}</th>').format(dof) for dof in joint.dofs)
+    body = Markup("")
+    for row, values in zip(joint.dofs, matrix):
+        cells = Markup("").join(
+            Markup('<td>{} <span class="unit">{}</span></td>').format(given(v), matrix_unit(row, column, damping))
+            for column, v in zip(joint.dofs, values)
+        )
+        body += Markup('<tr><th scope="row">{}</th>{}</tr>').format(row, cells)
+    return Markup('<table class="matrix"><tr><td></td>{}</tr>{}</table>').format(head, body)
+
+
+def _trains(system: System) -> Iterator[tuple[str, GearTrain]]:
+    for name, component in system.components.items():
+        if isinstance(component, GearTrain):
+            yield name, component
+
+
+def _kind(component: object) -> str:
+    name = type(component).__name__
+    return "".join(f" {c.lower()}" if c.isupper() else c for c in name).strip()
+
+
+def _scalars(component: object) -> Iterator[str]:
+    """The component's plain numbers, by name."""
+    assert is_dataclass(component)
+    for field in fields(component):
+        value = getattr(component, field.name)
+        name = field.name.replace("_", " ")
+        if not field.init:
+            continue
+        if isinstance(value, bool | int | float | str):
+            yield f"{name} {given(value) if isinstance(value, float) else value}"
+        elif isinstance(value, dict) and value and all(isinstance(v, int | float) for v in value.values()):
+            yield f"{name} " + ", ".join(f"{k} {given(v)}" for k, v in value.items())
+        elif isinstance(value, tuple) and value and all(isinstance(v, int | float) for v in value):
+            yield f"{name} ({', '.join(given(v) for v in value)})"

@@ -1,0 +1,1 @@
+"""Labelled results of the solver: power flow and frequency responses as xarray objects."""

@@ -1,0 +1,138 @@
+"""The frequency sweep of a model: bands in the terminal, all lines in a file, a check against the reference."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from rich.markup import escape
+from rich.table import Table
+
+from .. import api, console
+from ..errors import InputError
+from ..files import write_text
+from ..fmu.checks import Check
+from ..modelfile import Model
+from ..network.assemble import assemble
+from ..network.power import power_flow
+from ..network.reference import reference_solution
+from ..network.synthesis import Synthesis
+from ..numerics.arrays import Real
+
+BANDS = (0.0, 1000.0, 2000.0, 3000.0, 5000.0, np.inf)  # Hz; the lower edge belongs to the band
+_CHECKED_LINES = 40
+
+
+def run(model: Model, output: Path | None, check: bool, json: bool) -> bool:
+    """Sweep the model, print or write the result; whether the check (if wanted) passed."""
+    if output is not None and output.suffix != ".csv":
+        raise InputError(f"{output}: is not a .csv file; name it so, or use --json for other formats")
+    with console.progress("power flow", model.frequency.points, quiet=json) as advance:
+        flow = api.power_flow(model, progress=advance)
+    checks = reference_checks(model, quiet=json) if check else []
+    if output is not None:
+        write_text(output, csv_text(flow))
+    if json:
+        console.print_json(as_dict(flow, checks))
+    else:
+        _print(flow, checks)
+        if output is not None:
+            console.out.print(f"wrote {escape(str(output))}")
+    return all(item.passed for item in checks)
+
+
+def reference_checks(model: Model, quiet: bool = False) -> list[Check]:
+    """Synthesis against the unsynthesised solution on a part of the lines, and the power balance on all."""
+    f = model.frequencies()
+    omega = 2 * np.pi * f[:: max(len(f) // _CHECKED_LINES, 1)]
+    network = assemble(model.system)
+    modal = network.modal()
+    load = next(item for item in modal.loads if item.name == modal.excitation)
+    solved = Synthesis(modal, [load]).solve(omega)
+    with console.progress("reference solution", 1.0, quiet=quiet):
+        reference = reference_solution(network, omega)
+    flow, every = power_flow(modal, omega), power_flow(modal, 2 * np.pi * f)
+    balance = abs(every.dissipated_power.sum(axis=0) - every.input_power) / every.input_power
+    gross = abs(every.path_power).sum(axis=0)
+    what = f"on {len(omega)} lines, relative to the largest of its kind on the line"
+    return [
+        Check("interface forces against the unsynthesised solution", _force_deviation(modal, solved.force[:, 0], reference.force), 1e-9, what),
+        Check("alpha against the unsynthesised solution", float(np.max(abs(flow.share() / reference.alpha - 1))), 1e-8, "relative"),
+        Check("input power against the sum of dissipated powers", float(balance.max()), 1e-8, "relative, on all lines"),
+        Check("net power returned to the source", float(np.max(-every.transmitted_power / gross)), 1e-10, "relative to what flows, on all lines; negative: none"),
+        Check("alpha above 1", float(every.share().max() - 1.0), 1e-10, "on all lines; negative: none"),
+    ]
+
+
+def _force_deviation(network: Any, found: Any, expected: Any) -> float:
+    rotation = np.array([dof[0] == "r" for joint in network.joints for dof in joint.dofs])
+    worst = 0.0
+    for rows in (rotation, ~rotation):
+        if rows.any():
+            size = abs(expected[rows]).max(axis=0)
+            worst = max(worst, float(np.max(abs(found - expected)[rows].max(axis=0) / size)))
+    return worst
+
+
+def band_means(values: Real, f: Real) -> list[tuple[str, float]]:
+    """Mean over the lines of each band that holds lines."""
+    means = []
+    for low, high in zip(BANDS[:-1], BANDS[1:]):
+        inside = (f >= low) & ((f < high) | ((high == 5000.0) & (f == high)))
+        if high == np.inf:
+            inside &= f > 5000.0
+        if inside.any():
+            top = f"{high / 1e3:g}" if np.isfinite(high) else "..."
+            means.append((f"{low / 1e3:g}-{top} kHz", float(np.mean(values[inside]))))
+    return means
+
+
+def csv_text(flow: xr.Dataset) -> str:
+    """All lines of a sweep as a table, one column a quantity, complex ones as _re and _im."""
+    columns: dict[str, Real] = {"frequency_Hz": flow.frequency.values}
+    for name in ("input_power", "transmitted_power", "alpha", "alpha_force", "alpha_moment"):
+        columns[name + ("_W" if name.endswith("power") else "")] = flow[name].values
+    for element in flow.element.values:
+        columns[f"dissipated_power.{element}_W"] = flow.dissipated_power.sel(element=element).values
+    for path in flow.path.values:
+        columns[f"path_alpha.{path}"] = flow.path_alpha.sel(path=path).values
+        for name in ("force", "velocity_source", "velocity_receiver"):
+            values = flow[name].sel(path=path).values
+            columns[f"{name}.{path}_re"], columns[f"{name}.{path}_im"] = values.real, values.imag
+    text = io.StringIO()
+    np.savetxt(text, np.column_stack(list(columns.values())), "%.17g", ",", header=",".join(columns), comments="")
+    return text.getvalue()
+
+
+def as_dict(flow: xr.Dataset, checks: list[Check]) -> dict[str, Any]:
+    """A sweep for machines: arrays over frequency, by path and by element."""
+    data: dict[str, Any] = {"model": flow.attrs["model"], "excitation": flow.attrs["excitation"]}
+    data["frequency"] = flow.frequency.values
+    for name in ("input_power", "transmitted_power", "alpha", "alpha_force", "alpha_moment"):
+        data[name] = flow[name].values
+    data["path_alpha"] = {p: flow.path_alpha.sel(path=p).values for p in flow.path.values}
+    data["dissipated_power"] = {e: flow.dissipated_power.sel(element=e).values for e in flow.element.values}
+    if checks:
+        data["checks"] = [
+            {"name": c.name, "figure": c.figure, "limit": c.limit, "passed": c.passed} for c in checks
+        ]
+    return data
+
+
+def _print(flow: xr.Dataset, checks: list[Check]) -> None:
+    f = flow.frequency.values
+    table = Table(title="Power ratio, band means", title_justify="left", show_edge=False)
+    table.add_column("path")
+    rows = {"alpha (all)": flow.alpha.values, "force paths": flow.alpha_force.values, "moment paths": flow.alpha_moment.values}
+    rows |= {str(path): flow.path_alpha.sel(path=path).values for path in flow.path.values}
+    for name, _ in band_means(f, f):
+        table.add_column(name, justify="right")
+    for name, values in rows.items():
+        table.add_row(name, *(f"{mean:.4g}" for _, mean in band_means(values, f)))
+    console.out.print(table)
+    for check in checks:
+        verdict = "[green]passed[/]" if check.passed else "[red]FAILED[/]"
+        console.out.print(f"{verdict} {escape(check.name)}: {check.figure:.2g} (limit {check.limit:.2g})")

@@ -1,0 +1,266 @@
+"""Steps over time against scipy.linalg.expm and python-control: the discretisation is exact."""
+
+from itertools import pairwise
+
+import control
+import fmu_oracle as oracle
+import numpy as np
+import pytest
+import scipy.linalg
+from fmu_driver import OK, Fmu
+from fmu_helpers import export
+from fmu_networks import gearbox
+
+SCALES = np.array([1e-6, 100.0, 100.0])  # of the three loads
+STEPS = 10_000
+
+
+def signals(steps, seed=0):
+    return np.random.default_rng(seed).normal(size=(steps, len(SCALES))) * SCALES
+
+
+def names_of(network):
+    return [load.name for load in network.loads]
+
+
+def held(network, U, h):
+    """Zero-order hold with expm of the whole step, in numpy."""
+    A, B, C, D, names = oracle.time_system(network)
+    n, m = B.shape
+    E = scipy.linalg.expm(np.block([[A * h, B * h], [np.zeros((m, n + m))]]))
+    x, y = np.zeros(n), np.empty((len(U) + 1, len(names)))
+    for i, u in enumerate(U):
+        y[i] = C @ x + D @ u
+        x = E[:n, :n] @ x + E[:n, n:] @ u
+    y[-1] = C @ x + D @ U[-1]
+    return y, names, x
+
+
+def error(found, wanted):
+    return (np.abs(found - wanted).max(axis=0) / np.abs(wanted).max(axis=0)).max()
+
+
+@pytest.mark.parametrize("h", [1e-6, 1e-5, 5e-5, 1e-4])
+def test_held_inputs(fmu, network, h):
+    U = signals(STEPS)
+    wanted, names, _ = held(network, U, h)
+    assert error(fmu.run(names_of(network), U, h, names), wanted) < 1e-10
+
+
+@pytest.mark.parametrize("h", [1e-6, 1e-5, 5e-5, 1e-4])
+def test_held_inputs_python_control(fmu, network, h):
+    U = signals(STEPS, seed=1)
+    A, B, C, D, names = oracle.time_system(network)
+    sampled = control.sample_system(control.ss(A, B, C, D), h, method="zoh")
+    wanted = control.forced_response(sampled, T=np.arange(STEPS) * h, U=U.T).outputs.T
+    assert error(fmu.run(names_of(network), U, h, names)[:-1], wanted) < 1e-10
+
+
+@pytest.mark.parametrize("h", [1e-6, 1e-5, 5e-5, 1e-4])
+def test_linear_inputs_python_control(fmu, network, h):
+    """With input derivatives the inputs are straight lines over each step, as in python-control."""
+    U = signals(2001, seed=2)
+    A, B, C, D, names = oracle.time_system(network)
+    wanted = control.forced_response(control.ss(A, B, C, D), T=np.arange(len(U)) * h, U=U.T).outputs.T
+    slopes = np.diff(U, axis=0) / h
+    found = fmu.run(names_of(network), U[:-1], h, names, slopes=slopes)
+    # at 1e-4 s it is python-control that is off by 2e-10, see the test in extended precision
+    assert error(found, wanted) < 1e-9
+
+
+@pytest.mark.skipif(np.finfo(np.longdouble).eps > 1e-18, reason="long double is no wider than double here")
+@pytest.mark.parametrize("h", [1e-5, 1e-4])
+def test_linear_inputs_in_extended_precision(fmu, network, h):
+    """Against a Taylor series with squaring in 80-bit arithmetic: finer than the other references."""
+    U = signals(2001, seed=2)
+    A, B, C, D, names = oracle.time_system(network)
+    n, m = B.shape
+    M = np.zeros((n + 2 * m, n + 2 * m), dtype=np.longdouble)
+    M[:n, :n], M[:n, n : n + m] = A * np.longdouble(h), B * np.longdouble(h)
+    M[n : n + m, n + m :] = np.eye(m)
+    balance = np.ones(len(M), dtype=np.longdouble)
+    balance[: n // 2] = np.sqrt(np.maximum(network.eigenvalues, 1e7))
+    M = M * balance[:, None] / balance / 2**14
+    E = term = np.eye(len(M), dtype=np.longdouble)
+    for k in range(1, 20):
+        term = term @ M / k
+        E = E + term
+    for _ in range(14):
+        E = E @ E
+    E = np.array(E / balance[:, None] * balance, dtype=float)
+    x, wanted = np.zeros(n), np.empty((len(U), len(names)))
+    for i, (u, step) in enumerate(zip(U, np.diff(U, axis=0, append=U[-1:]))):
+        wanted[i] = C @ x + D @ u
+        x = E[:n] @ np.concatenate([x, u, step])
+    found = fmu.run(names_of(network), U[:-1], h, names, slopes=np.diff(U, axis=0) / h)
+    assert error(found, wanted) < 1e-11
+
+
+def test_extrapolated_input_is_held_afterwards(fmu):
+    name, h = "actuators.shaker", 1e-4
+    assert fmu.set({name: 2.0}) == OK
+    assert fmu.set_slopes({name: 1e4}) == OK
+    assert fmu.step(0.0, h) == OK
+    assert fmu.get([name])[0] == pytest.approx(3.0, rel=1e-15)
+    assert fmu.step(h, h) == OK
+    assert fmu.get([name])[0] == pytest.approx(3.0, rel=1e-15)
+    assert fmu.set_slopes({name: 1e4}) == OK
+    assert fmu.set({name: 5.0}) == OK  # resets the slope
+    assert fmu.step(2 * h, h) == OK
+    assert fmu.get([name])[0] == 5.0
+
+
+def test_power_is_force_times_receiver_velocity(fmu, network):
+    inputs, U = names_of(network), signals(200)
+    joint = network.joints[0]
+    casing = network.components["casing"]
+    # the casing's three rates follow from three velocities of its points
+    probes = [
+        o for o in network.outputs if o.quantity == "velocity" and o.name.startswith(("bearing", "casing"))
+    ]
+    rows = np.array([o.row[casing] for o in probes])
+    names = ["bearing_1.power", "bearing_1.force_uy", "bearing_1.force_rx", *(o.name for o in probes)]
+    y = fmu.run(inputs, U, 5e-5, names)
+    rates = np.linalg.lstsq(rows, y[:, 3:].T, rcond=None)[0]
+    expected = ((joint.receiver[:, casing] @ rates) * y[:, 1:3].T).sum(axis=0)
+    assert np.abs(y[:, 0] - expected).max() < 1e-9 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("h", [1e-3, 0.03, 1.0])
+def test_long_steps_settle_to_the_static_solution(fmu, network, h):
+    """No instability and no loss of the slow modes: a constant force ends in K^-1 f."""
+    force = {"actuators.shaker": 100.0}
+    A, B, C, D, names = oracle.time_system(network)
+    steps = int(np.ceil(2.0 / h))
+    assert fmu.set(force) == OK
+    for i in range(steps):
+        assert fmu.step(i * h, h) == OK
+    u = np.array([0.0, 0.0, 100.0])
+    # the modes of the floating source train are rigid: the shaker moves them with the casing
+    x = np.linalg.lstsq(A, -B @ u, rcond=None)[0]
+    for name in ("casing.displacement_uy", "mount_1.force_uy"):
+        i = names.index(name)
+        assert fmu.get([name])[0] == pytest.approx((C @ x + D @ u)[i], rel=1e-7)
+
+
+def test_steps_of_any_size(fmu, network):
+    """Variable steps, more kinds than are cached, against numpy."""
+    rng = np.random.default_rng(3)
+    A, B, C, D, names = oracle.time_system(network)
+    sizes = rng.choice([1e-6, 3e-6, 1e-5, 2.5e-5, 7e-5, 1e-4], size=300)
+    u, x, t = SCALES, np.zeros(len(A)), 0.0
+    maps = {}
+    for h in set(sizes):
+        n, m = B.shape
+        maps[h] = scipy.linalg.expm(np.block([[A * h, B * h], [np.zeros((m, n + m))]]))
+    fmu.set(dict(zip(names_of(network), u)))
+    for h in sizes:
+        assert fmu.step(t, h) == OK
+        t += h
+        x = maps[h][: len(A), : len(A)] @ x + maps[h][: len(A), len(A) :] @ u
+    wanted = C @ x + D @ u
+    assert np.abs(fmu.get(names) - wanted).max() <= 1e-10 * np.abs(wanted).max()
+
+
+def test_jitter_of_the_step_size_does_not_discretise_again(unpacked):
+    """Steps computed as t1 - t0: one discretisation, and the log says so."""
+    fmu = Fmu(unpacked, logging=1)
+    fmu.start(start=3.0)
+    grid = 3.0 + np.arange(501) * 1e-5
+    for a, b in pairwise(grid):
+        assert fmu.step(float(a), float(b - a)) == OK
+    assert sum("discretised" in message for message in fmu.messages) == 1
+    fmu.free()
+
+
+def test_parameters_change_during_the_run(fmu, network):
+    """Two systems, one state: piecewise against numpy."""
+    U, h = signals(1000), 2e-5
+    K, C = 0.3 * network.joints[0].stiffness, 2.0 * network.joints[0].damping
+    K[0, 1] = K[1, 0] = -0.2 * K[0, 1]
+    second = network.with_joint("bearing_1", K, C).with_joint(
+        "mount_3", 5e6 * np.ones((1, 1)), np.zeros((1, 1))
+    )
+    object.__setattr__(second, "modal_damping", {"gear_train": 0.1})
+    y1, names, x = held(network, U[:500], h)
+    A, B, Cm, D, _ = oracle.time_system(second)
+    # q is continuous, and so is s = q' - X d e: the state the runtime keeps
+    n, m = B.shape
+    E = scipy.linalg.expm(np.block([[A * h, B * h], [np.zeros((m, n + m))]]))
+    y2 = []
+    for u in U[500:]:
+        y2.append(Cm @ x + D @ u)
+        x = E[:n, :n] @ x + E[:n, n:] @ u
+    y2.append(Cm @ x + D @ U[-1])
+    found1 = fmu.run(names_of(network), U[:500], h, names)
+    assert error(found1, y1) < 1e-9
+    changes = {f"bearing_1.stiffness[{i},{k}]": K[i - 1, k - 1] for i, k in ((1, 1), (1, 2), (2, 2))}
+    changes |= {f"bearing_1.damping[{i},{k}]": C[i - 1, k - 1] for i, k in ((1, 1), (1, 2), (2, 2))}
+    changes |= {"mount_3.stiffness": 5e6, "mount_3.damping": 0.0, "gear_train.modal_damping": 0.1}
+    assert fmu.set(changes) == OK
+    found2 = fmu.run(names_of(network), U[500:], h, names, start=500 * h)
+    assert error(found2, np.array(y2)) < 1e-9
+
+
+def test_two_instances_do_not_share_anything(unpacked, network):
+    a, b = Fmu(unpacked, name=b"a"), Fmu(unpacked, name=b"b")
+    soft = network.with_joint("mount_1", 1e6 * np.ones((1, 1)), network.joints[4].damping)
+    for instance in (a, b):
+        instance.start()
+    assert b.set({"mount_1.stiffness": 1e6}) == OK
+    U, h = signals(50), 5e-5
+    inputs = names_of(network)
+    ya, yb = [], []
+    names = held(network, U, h)[1]
+    for i, u in enumerate(U):  # interleaved
+        for instance, y in ((a, ya), (b, yb)):
+            assert instance.set(dict(zip(inputs, u))) == OK
+            y.append(instance.get(names))
+            assert instance.step(i * h, h) == OK
+    assert error(np.array(ya), held(network, U, h)[0][:-1]) < 1e-10
+    assert error(np.array(yb), held(soft, U, h)[0][:-1]) < 1e-10
+    a.free()
+    b.free()
+
+
+def test_reset_and_run_again_is_bit_identical(fmu, network):
+    U, names = signals(300), [o.name for o in network.outputs]
+    first = fmu.run(names_of(network), U, 1e-5, names)
+    fmu.set({"bearing_1.stiffness[1,1]": 2e8, "gear_train.modal_damping": 0.5, "frequency": 33.0})
+    fmu.run(names_of(network), U, 3e-5, names, start=300 * 1e-5)
+    assert fmu.call("fmi2Reset") == OK
+    fmu.start()
+    assert fmu.get(["frequency", "gear_train.modal_damping"]).tolist() == [500.0, 0.015]
+    assert np.array_equal(fmu.run(names_of(network), U, 1e-5, names), first)
+
+
+def test_free_rigid_body_drifts_exactly(tmp_path):
+    """Jordan blocks: without stiffness to the ground a constant force gives x = F t^2 / 2 m, for any step."""
+    network = gearbox()
+    object.__setattr__(network, "modal_damping", {"gear_train": 0.015})
+    for joint in network.joints:
+        network = network.with_joint(joint.name, 0 * joint.stiffness, 0 * joint.damping)
+    fmu = Fmu(Fmu.unpack(export(network, tmp_path / "free.fmu"), tmp_path / "free"))
+    for h in (1e-6, 1e-4, 0.1):
+        fmu.call("fmi2Reset")
+        fmu.start()
+        fmu.set({"actuators.shaker": 12.0})
+        for i in range(100):
+            assert fmu.step(i * h, h) == OK
+        rates = fmu.get(["casing.displacement_uy", "casing.velocity_uy", "casing.acceleration_uy"])
+        t = 100 * h
+        assert rates == pytest.approx([t * t / 2, t, 1.0], rel=1e-11)
+    fmu.free()
+
+
+@pytest.mark.slow
+def test_a_thousand_instances(unpacked):
+    instances = [Fmu(unpacked, name=str(i).encode()) for i in range(1000)]
+    for i, instance in enumerate(instances):
+        instance.start()
+        assert instance.set({"actuators.shaker": float(i)}) == OK
+        assert instance.step(0.0, 1e-4) == OK
+    found = np.array([instance.get(["casing.velocity_uy"])[0] for instance in instances])
+    assert found == pytest.approx(found[1] * np.arange(1000), rel=1e-12)
+    for instance in instances:
+        instance.free()
