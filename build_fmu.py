@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Main job: a model file becomes FMUs of both kinds, their validation and a report.
 
-    python build_fmu.py models/gearbox.toml                      everything, into build/gearbox/
-    python build_fmu.py models/gearbox.toml -o gearbox.fmu       one FMU
-    python build_fmu.py --help                                   all options
+python build_fmu.py models/gearbox.toml                      everything, into build/gearbox/
+python build_fmu.py models/gearbox.toml -o gearbox.fmu       one FMU
+python build_fmu.py --help                                   all options
 """
 
 import sys
 
-if sys.version_info < (3, 11):
+if sys.version_info < (3, 11):  # noqa: UP036 - run by hand, by any Python
     sys.exit("Gearpath needs Python 3.11 or newer; this is " + sys.version.split()[0])
 
 try:

@@ -126,6 +126,4 @@ def validate_fmu(
     from .fmu.validation import validate
 
     frequency = model.frequency
-    return validate(
-        Path(path), model.system, (frequency.start, frequency.stop), message=message, advance=advance
-    )
+    return validate(Path(path), model.system, (frequency.start, frequency.stop), message=message, advance=advance)

@@ -24,7 +24,9 @@ app = typer.Typer(
 ModelPath = Annotated[Path, typer.Argument(metavar="MODEL", help="Model file (TOML), such as models/gearbox.toml.")]
 Settings = Annotated[
     list[str],
-    typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the model, such as joints.mount_1.damping=600."),
+    typer.Option(
+        "--set", metavar="KEY=VALUE", help="Replace a value of the model, such as joints.mount_1.damping=600."
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document for machines instead of text.")]
 
@@ -37,7 +39,9 @@ def _version(wanted: bool) -> None:
 
 @app.callback()
 def options(
-    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")] = False,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
 ) -> None:
     """Structure-borne noise power flow in gearboxes, and the same physics as FMUs."""
 
@@ -61,7 +65,9 @@ def sweep(
 def fmu(
     model: ModelPath,
     output: Annotated[Path, typer.Option("--output", "-o", help="The FMU to write.")],
-    kind: Annotated[str, typer.Option(help="native (runs without Python) or python (design parameters too).")] = "native",
+    kind: Annotated[
+        str, typer.Option(help="native (runs without Python) or python (design parameters too).")
+    ] = "native",
     fmi: Annotated[str, typer.Option(help="Version of FMI.")] = "2.0",
     set_: Settings = [],  # noqa: B006
     json: Json = False,

@@ -63,7 +63,12 @@ def _toml_value(text: str) -> Any:
 @contextmanager
 def progress(title: str, total: float, quiet: bool = False) -> Iterator[Callable[[float], None]]:
     """A progress bar on stderr that says how much of `total` is done."""
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"), TimeElapsedColumn())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:>3.0f} %"),
+        TimeElapsedColumn(),
+    )
     with Progress(*columns, console=err, transient=True, disable=quiet) as bar:
         task = bar.add_task(title, total=total)
         yield lambda amount: bar.advance(task, amount)

@@ -78,7 +78,11 @@ def test_an_idler_couples_the_spins_of_its_two_meshes():
     """Two meshes on one idler: (T J^-1 T^T)^-1 has an off-diagonal mass; total kinetic energy is that of the disks."""
     base = default_gear_train()
     third = type(base.shafts["output"])(
-        base.shafts["output"].material, (0.15, 0.0, -0.125), base.shafts["output"].sections, 0.886, (8,),
+        base.shafts["output"].material,
+        (0.15, 0.0, -0.125),
+        base.shafts["output"].sections,
+        0.886,
+        (8,),
         (Disk("last", 0.125, 1.0, 1e-3, 2e-3),),
     )
     mesh = type(base.meshes["mesh"])((("output", "wheel"), ("third", "last")), 1e8, (0.05025, 0.05))

@@ -32,9 +32,7 @@ def gearbox(
     first, second = gears or (lengths[0] / 2, lengths[1] / 2)
     train = GearTrain(
         {
-            "input": _shaft(
-                -0.04975, lengths[0], diameter, Disk("pinion", first, 1.526, 1.0237e-3, 1.8884e-3)
-            ),
+            "input": _shaft(-0.04975, lengths[0], diameter, Disk("pinion", first, 1.526, 1.0237e-3, 1.8884e-3)),
             "output": _shaft(0.05025, lengths[1], 0.03, Disk("wheel", second, 1.5568, 1.0638e-3, 1.9655e-3)),
         },
         {"mesh": Mesh((("input", "pinion"), ("output", "wheel")), 1.5e8, (0.04975, 0.05025))},
@@ -42,9 +40,7 @@ def gearbox(
     )
     stations = [("input", 0.0), ("input", lengths[0]), ("output", 0.0), ("output", lengths[1])]
     joints = {
-        f"bearing_{k}": Joint(
-            "bearing", (Port("gear_train", s, z), Port("casing")), ("uy", "rx"), STIFFNESS, DAMPING
-        )
+        f"bearing_{k}": Joint("bearing", (Port("gear_train", s, z), Port("casing")), ("uy", "rx"), STIFFNESS, DAMPING)
         for k, (s, z) in enumerate(stations, 1)
     }
     for k, at in enumerate(mounts, 1):

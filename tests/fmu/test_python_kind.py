@@ -5,6 +5,7 @@ import sys
 import xml.etree.ElementTree as ET
 import zipfile
 from ctypes import byref, create_string_buffer
+from pathlib import Path
 
 import pytest
 
@@ -16,7 +17,8 @@ from fmpy.fmi2 import fmi2FMUstate
 from fmpy.validation import validate_fmu
 from python_gearbox import STIFFNESS, Host, export, gearbox
 
-from gearpath.errors import InputError
+from gearpath.errors import GearpathError, InputError
+from gearpath.fmu import python_bundle
 from gearpath.fmu.variables import variable_table
 from gearpath.network.assemble import assemble
 
@@ -60,9 +62,7 @@ def test_other_model_has_other_names(path, tmp_path):
     for file in (path, other):
         with zipfile.ZipFile(file) as archive:
             modules.append(archive.read("resources/slavemodule.txt").decode())
-            assert b"class Gearpath" + modules[-1].split("_")[1].encode() in archive.read(
-                f"resources/{modules[-1]}.py"
-            )
+            assert b"class Gearpath" + modules[-1].split("_")[1].encode() in archive.read(f"resources/{modules[-1]}.py")
     assert modules[0] != modules[1]
 
 
@@ -267,11 +267,12 @@ def test_state_of_another_model_is_refused(host, tmp_path):
     assert "another model" in host.log[-1][1]
 
 
+@pytest.mark.slow
 def test_many_instances_and_many_failures_leave_the_process_alive(path):
     """pythonfmu drops references that it does not own; without remedy this ends the process."""
     script = f"""
 import gc, sys
-sys.path.insert(0, {str(__import__("pathlib").Path(__file__).parent)!r})
+sys.path.insert(0, {str(Path(__file__).parent)!r})
 from python_gearbox import Host
 folder = None
 for _ in range(25):
@@ -361,3 +362,29 @@ def test_arguments_that_cannot_be_are_refused(tmp_path):
         with pytest.raises(InputError):
             export(gearbox(), tmp_path / "x.fmu", **changes)
     assert not list(tmp_path.iterdir())
+
+
+def test_model_that_is_no_plain_source_is_refused(tmp_path):
+    with pytest.raises(InputError, match="Python source"):
+        export(gearbox(mass=Pounds(12.0)), tmp_path / "x.fmu")
+
+
+class Pounds(float):
+    """A number whose repr is no Python."""
+
+    def __repr__(self):
+        return "12 lb"
+
+
+def test_incomplete_installation_is_named(tmp_path, monkeypatch):
+    monkeypatch.setattr(python_bundle, "_FOLDERS", (tmp_path / "nowhere",))
+    with pytest.raises(GearpathError, match="not installed completely"):
+        export(gearbox(), tmp_path / "x.fmu")
+
+
+def test_templates_are_found_in_a_wheel(path, tmp_path, monkeypatch):
+    checkout = python_bundle._FOLDERS[0]
+    for name in ("entry.py", "slave.py"):
+        (tmp_path / name).write_bytes((checkout / name).read_bytes())
+    monkeypatch.setattr(python_bundle, "_FOLDERS", (tmp_path / "nowhere", tmp_path))
+    assert export(gearbox(), tmp_path / "x.fmu").read_bytes() == path.read_bytes()

@@ -51,9 +51,7 @@ def physical_system(system, force, outputs):
         if output.quantity == "velocity" and output.name in outputs:
             rows.append(np.concatenate([np.zeros(n), output.row @ inverse.T]))
     load = next(item for item in network.loads if item.name == force)
-    A = np.block(
-        [[np.zeros((n, n)), w * np.eye(n)], [-inverse @ K @ inverse.T / w, -inverse @ D @ inverse.T]]
-    )
+    A = np.block([[np.zeros((n, n)), w * np.eye(n)], [-inverse @ K @ inverse.T / w, -inverse @ D @ inverse.T]])
     b = np.concatenate([np.zeros(n), inverse @ load.column])
     return A, b[:, None], np.array(rows)
 
@@ -263,9 +261,7 @@ def test_fmus_of_different_models_and_of_the_same_model_in_one_process(path, tmp
 
 def test_declared_dependencies_hold_in_every_design(path):
     description = fmpy.read_model_description(str(path))
-    declared = {
-        unknown.variable.name: {v.name for v in unknown.dependencies} for unknown in description.outputs
-    }
+    declared = {unknown.variable.name: {v.name for v in unknown.dependencies} for unknown in description.outputs}
     for _, changes in DESIGNS.values():
         network = assemble(gearbox(**changes)).modal()
         twin = time_twin(network)

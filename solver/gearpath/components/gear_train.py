@@ -133,15 +133,10 @@ class GearTrain:
 
     def _gears(self, mesh: Mesh) -> tuple[tuple[ShaftPoint, float, float], ...]:
         """Both gears of a mesh: where, sign along the line of action, lever of theta_z in the mesh deformation."""
-        points = [
-            ShaftPoint(shaft, self.shafts[shaft].disk(disk).z) for shaft, disk in mesh.between
-        ]
+        points = [ShaftPoint(shaft, self.shafts[shaft].disk(disk).z) for shaft, disk in mesh.between]
         x1, x2 = (self.shafts[point.shaft].origin[0] for point in points)
         turn = 1.0 if x1 <= x2 else -1.0  # the contact lies between the axes
-        return tuple(
-            (point, sign, turn * radius)
-            for point, sign, radius in zip(points, (1.0, -1.0), mesh.base_radii)
-        )
+        return tuple((point, sign, turn * radius) for point, sign, radius in zip(points, (1.0, -1.0), mesh.base_radii))
 
     def _deflections(self, row: Callable[[ShaftPoint], Real], size: int, spins: int) -> list[Real]:
         """Mesh deformation b of each mesh: b @ q = y1 - y2 + p, p = r1 theta1 + r2 theta2."""
@@ -210,6 +205,4 @@ class GearTrain:
                         levers[k, s] += lever if point.shaft == name else 0.0
         compliance = np.linalg.solve(spin.T @ M @ spin, levers.T)
         d = spin @ compliance @ np.linalg.inv(levers @ compliance)
-        return {
-            name: MeshMotion(d[:, k], float(d[:, k] @ M @ d[:, k])) for k, name in enumerate(self.meshes)
-        }
+        return {name: MeshMotion(d[:, k], float(d[:, k] @ M @ d[:, k])) for k, name in enumerate(self.meshes)}

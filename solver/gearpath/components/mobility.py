@@ -18,7 +18,7 @@ def mobility_modal(modes: Modes, rows: Real, modal_damping: float, omega: Real) 
     """Y = i w (L Phi) (Lambda - w^2 I + i w Xi)^-1 (L Phi)^T (Eq. 11a), shape (F, m, m) for rows (m, n)."""
     shapes = rows @ modes.shapes
     response = modal_response(modes.eigenvalues, 2.0 * modal_damping * np.sqrt(modes.eigenvalues), omega)
-    return np.einsum("mr,rf,kr->fmk", shapes, response, shapes, optimize=True)
+    return np.asarray(np.einsum("mr,rf,kr->fmk", shapes, response, shapes, optimize=True))
 
 
 def mobility_direct(structure: Structure, rows: Real, omega: Real) -> Complex:

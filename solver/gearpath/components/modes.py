@@ -49,9 +49,7 @@ def modes(structure: Structure) -> Modes:
                 f"the structure declares {count} rigid-body modes, but its stiffness has a different null space"
             )
     order = np.argsort(eigenvalues)
-    return Modes(
-        np.concatenate([np.zeros(count), eigenvalues[order]]), np.hstack([R, elastic[:, order]])
-    )
+    return Modes(np.concatenate([np.zeros(count), eigenvalues[order]]), np.hstack([R, elastic[:, order]]))
 
 
 def _sharpen(shapes: Real, K: Real, M: Real) -> tuple[Real, Real]:

@@ -20,9 +20,7 @@ def model_identifier(name: str) -> str:
     return identifier if re.match(r"[A-Za-z_]", identifier) else f"model_{identifier}"
 
 
-def export(
-    system: System, path: Path, *, fmi: str = "2.0", kind: str = "native", frequency: float = 1000.0
-) -> Path:
+def export(system: System, path: Path, *, fmi: str = "2.0", kind: str = "native", frequency: float = 1000.0) -> Path:
     """Write the FMU to `path` (a temporary file is moved there at the end) and return the path.
 
     `frequency` (Hz) is the start value of the input of that name. Raises InputError for an unknown kind or version

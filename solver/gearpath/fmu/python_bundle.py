@@ -42,15 +42,11 @@ def model_source(system: System, entries: Sequence[Entry], frequency: float) -> 
     except (NameError, SyntaxError) as error:
         raise InputError(f"the model {system.name} cannot be written as Python source: {error}") from error
     if not same:
-        raise InputError(
-            f"the model {system.name} cannot be written as Python source; it holds more than plain values"
-        )
+        raise InputError(f"the model {system.name} cannot be written as Python source; it holds more than plain values")
     modules: dict[str, list[str]] = {}
     for name in used:
         modules.setdefault(names[name].__module__.removeprefix(_SOLVER.name), []).append(name)
-    imports = "".join(
-        f"from {module} import {', '.join(found)}\n" for module, found in sorted(modules.items())
-    )
+    imports = "".join(f"from {module} import {', '.join(found)}\n" for module, found in sorted(modules.items()))
     table = "".join(f"    {entry!r},\n" for entry in entries)
     return (
         f'"""The model of this FMU; see `network/system.py`."""\n\n{imports}'
@@ -88,9 +84,7 @@ def bundle(model: str, pythonfmu: Mapping[str, bytes], salt: bytes) -> tuple[str
 def _renamed(content: bytes, package: str) -> bytes:
     """The package and class of this FMU in place of those of the template."""
     suffix = package.removeprefix("gearpath_")
-    return content.replace(_PACKAGE.encode(), package.encode()).replace(
-        b"GearpathFmu", f"Gearpath{suffix}".encode()
-    )
+    return content.replace(_PACKAGE.encode(), package.encode()).replace(b"GearpathFmu", f"Gearpath{suffix}".encode())
 
 
 def _solver_files() -> dict[str, bytes]:

@@ -55,9 +55,7 @@ a refused step as <code>fmi2Discard</code>. The instance can be used further in 
 """
 
 
-def documentation(
-    name: str, description: str, variables: Sequence[Variable], platforms: Sequence[str]
-) -> bytes:
+def documentation(name: str, description: str, variables: Sequence[Variable], platforms: Sequence[str]) -> bytes:
     """documentation/index.html."""
     rows = (
         f"<tr><td>{escape(variable.name)}</td><td>{escape(variable.unit)}</td>"

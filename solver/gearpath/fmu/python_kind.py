@@ -11,11 +11,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError, MissingExtraError
+from ..errors import GearpathError, InputError, MissingExtraError
 from ..network.assemble import assemble
 from ..network.system import System
 from .description import Experiment, model_description
-from .native import content_guid
+from .native import _check_network, content_guid
 from .package import write_fmu
 from .python_bundle import bundle, model_source
 from .python_documentation import documentation
@@ -30,6 +30,7 @@ class {name}(Fmi2Slave):
     def do_step(self, current_time, step_size):
         return True
 """
+_OLDEST = (0, 7)  # of pythonfmu: earlier native parts look for the slave's class in another way
 # What pythonfmu's native part can do (measured with 0.7.0), where it differs from the native kind.
 _CAPABILITIES = {
     "needsExecutionTool": "true",
@@ -67,11 +68,12 @@ def export_python(
 
     Raises:
         InputError: the system, a name or a time cannot be used.
-        MissingExtraError: pythonfmu is not installed.
+        GearpathError: pythonfmu is too old, or not installed (MissingExtraError).
     """
     _check_arguments(model_identifier, start_time, stop_time, step_size)
     base = _base_fmu(model_identifier)
     network = assemble(system).modal()
+    _check_network(network)
     variables = python_table(system, network, frequency)
     experiment = Experiment(float(start_time), float(stop_time), float(step_size))
 
@@ -105,9 +107,7 @@ def export_python(
 
 def _check_arguments(identifier: str, start: float, stop: float, step: float) -> None:
     if not re.fullmatch(r"[A-Za-z_]\w*", identifier, re.ASCII):
-        raise InputError(
-            f"the model identifier {identifier!r} is not a C name; use letters, digits and underscores"
-        )
+        raise InputError(f"the model identifier {identifier!r} is not a C name; use letters, digits and underscores")
     if not (np.isfinite([start, stop, step]).all() and start < stop and step > 0):
         raise InputError(
             f"start {start} s, stop {stop} s and step {step} s are no experiment; "
@@ -121,6 +121,9 @@ def _base_fmu(identifier: str) -> dict[str, bytes]:
         from pythonfmu import FmuBuilder
     except ImportError as error:
         raise MissingExtraError("pythonfmu", "fmu") from error
+    installed = metadata.version("pythonfmu")
+    if tuple(int(part) for part in installed.split(".")[:2]) < _OLDEST:
+        raise GearpathError(f'pythonfmu {installed} is too old; run: python -m pip install "pythonfmu>=0.7"')
     with tempfile.TemporaryDirectory(prefix="gearpath_") as name:
         folder = Path(name)
         stub = f"{folder.name}_stub"

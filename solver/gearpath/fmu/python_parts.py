@@ -112,9 +112,7 @@ def shaft_parameters(name: str, shaft_name: str, shaft: Shaft) -> list[DesignPar
 
     def widen(system: System, value: float) -> System:
         old = shaft_of(system)
-        return _with_shaft(
-            system, name, shaft_name, replace(old, sections=(replace(old.sections[0], outer=value),))
-        )
+        return _with_shaft(system, name, shaft_name, replace(old, sections=(replace(old.sections[0], outer=value),)))
 
     length = DesignParameter(
         f"{name}.{shaft_name}.length",

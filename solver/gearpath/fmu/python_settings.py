@@ -40,9 +40,7 @@ class Entry:
         if self.kind == "modal_damping" and not 0.0 <= value < 1.0:
             raise InputError(f"{self.name} is a damping ratio: at least 0 and less than 1, not {value:g}")
         if self.kind in ("stiffness", "damping") and self.row == self.column and value < 0.0:
-            raise InputError(
-                f"{self.name} is on the diagonal of its matrix and must not be negative, as {value:g} is"
-            )
+            raise InputError(f"{self.name} is on the diagonal of its matrix and must not be negative, as {value:g} is")
 
 
 @dataclass

@@ -42,9 +42,7 @@ def python_table(system: System, network: ModalNetwork, frequency: float) -> tup
     taken = {variable.name for variable in common}
     for design in designs:
         if design.name in taken:
-            raise InputError(
-                f"two FMU variables are called {design.name!r}; rename what one of them belongs to"
-            )
+            raise InputError(f"two FMU variables are called {design.name!r}; rename what one of them belongs to")
     moved = _moved_table(system, frequency)
     names = tuple(design.name for design in designs)
     return (*(_completed(variable, common, moved, names) for variable in common), *designs)

@@ -14,7 +14,7 @@ from ..joints import Joint, Port
 from ..numerics.arrays import Real
 from .modal import ModalNetwork
 from .records import JointRows, Load, Output
-from .system import Component, MeshExcitation, PointExcitation, System, Vector
+from .system import Actuator, Component, MeshExcitation, PointExcitation, Sensor, System, Vector
 
 POINT_LOAD = "excitation.force"  # the input that a point excitation adds
 _ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
@@ -47,9 +47,7 @@ def assemble(system: System) -> Network:
     ports = _Ports(system)
     joints = tuple(_joint_rows(ports, name, joint) for name, joint in system.joints.items())
     excitation, loads = _loads(ports, system)
-    return Network(
-        system, ports.structures, ports.blocks, joints, loads, _outputs(ports, system, joints), excitation
-    )
+    return Network(system, ports.structures, ports.blocks, joints, loads, _outputs(ports, system, joints), excitation)
 
 
 def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
@@ -57,8 +55,7 @@ def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
     shapes = scipy.linalg.block_diag(*(basis[name].shapes for name in network.structures))
     ends = np.cumsum([len(basis[name].eigenvalues) for name in network.structures])
     slices = {
-        name: slice(int(end) - len(basis[name].eigenvalues), int(end))
-        for name, end in zip(network.structures, ends)
+        name: slice(int(end) - len(basis[name].eigenvalues), int(end)) for name, end in zip(network.structures, ends)
     }
     mass = scipy.linalg.block_diag(*(s.mass for s in network.structures.values()))
     project = mass @ shapes
@@ -78,13 +75,11 @@ def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
         },
         eigenvalues=np.concatenate([basis[name].eigenvalues for name in network.structures]),
         joints=tuple(
-            replace(joint, source=joint.source @ shapes, receiver=joint.receiver @ shapes)
-            for joint in network.joints
+            replace(joint, source=joint.source @ shapes, receiver=joint.receiver @ shapes) for joint in network.joints
         ),
         loads=tuple(load(item) for item in network.loads),
         outputs=tuple(
-            replace(output, row=None if output.row is None else output.row @ shapes)
-            for output in network.outputs
+            replace(output, row=None if output.row is None else output.row @ shapes) for output in network.outputs
         ),
         excitation=network.excitation,
         paths=network.paths,
@@ -115,7 +110,7 @@ class _Ports:
         for joint in system.joints.values():
             for port in joint.between:
                 ask(port, joint_place(system, joint), stations)
-        others = [*system.actuators.values(), *system.sensors.values()]
+        others: list[Actuator | Sensor] = [*system.actuators.values(), *system.sensors.values()]
         for item in others:
             ask(item.port, item.at, probes)
         if isinstance(system.excitation, PointExcitation):
@@ -127,8 +122,7 @@ class _Ports:
         ends = np.cumsum([structure.size for structure in self.structures.values()])
         self.size = int(ends[-1])
         self.blocks = {
-            name: slice(int(end) - self.structures[name].size, int(end))
-            for name, end in zip(self.structures, ends)
+            name: slice(int(end) - self.structures[name].size, int(end)) for name, end in zip(self.structures, ends)
         }
 
     def _build(

@@ -54,7 +54,5 @@ class ModalNetwork:
 
     def with_joint(self, name: str, stiffness: Real, damping: Real) -> "ModalNetwork":
         """The same network with one joint exchanged; the components stay solved."""
-        joints = tuple(
-            replace(j, stiffness=stiffness, damping=damping) if j.name == name else j for j in self.joints
-        )
+        joints = tuple(replace(j, stiffness=stiffness, damping=damping) if j.name == name else j for j in self.joints)
         return replace(self, joints=joints)

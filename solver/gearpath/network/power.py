@@ -61,18 +61,19 @@ def power_flow(
     slices = network.joint_slices()
     joints = [joint for joint in network.joints if joint.name in network.paths]
     names = tuple(f"{joint.name}.{dof}" for joint in joints for dof in joint.dofs)
-    interface = np.concatenate([np.arange(slices[j.name].start, slices[j.name].stop) for j in joints] or [[]])
-    interface = interface.astype(int)
+    interface = [i for joint in joints for i in range(slices[joint.name].start, slices[joint.name].stop)]
     receiver = np.vstack([joint.receiver for joint in network.joints])
     elements = (*network.components, *(joint.name for joint in network.joints))
     lines, paths = len(omega), len(names)
     flow = PowerFlow(
-        names,
-        elements,
-        np.empty(lines),
-        np.empty((paths, lines)),
-        *(np.empty((paths, lines), complex) for _ in range(3)),
-        np.empty((len(elements), lines)),
+        paths=names,
+        elements=elements,
+        input_power=np.empty(lines),
+        path_power=np.empty((paths, lines)),
+        force=np.empty((paths, lines), complex),
+        velocity_source=np.empty((paths, lines), complex),
+        velocity_receiver=np.empty((paths, lines), complex),
+        dissipated_power=np.empty((len(elements), lines)),
     )
     for part in chunks(lines, synthesis.bytes_per_line):
         w = omega[part]

@@ -43,9 +43,7 @@ class Reference:
 def reference_solution(network: Network, omega: Real) -> Reference:
     """Solve the assembled machine at each angular frequency (rad/s), one pivoted factorisation a line."""
     parts = list(network.structures.values())
-    M, C = (
-        scipy.linalg.block_diag(*blocks) for blocks in zip(*((s.mass, modal_damping_matrix(s)) for s in parts))
-    )
+    M, C = (scipy.linalg.block_diag(*blocks) for blocks in zip(*((s.mass, modal_damping_matrix(s)) for s in parts)))
     K = _extended_blocks([_exactly_free(s) for s in parts])
     source, receiver = (
         np.vstack([getattr(joint, side) for joint in network.joints]) for side in ("source", "receiver")
@@ -85,9 +83,7 @@ def reference_solution(network: Network, omega: Real) -> Reference:
             input_power[k] += 0.5 * np.real(np.vdot(B @ own, force[:, k]))
     path_power = 0.5 * np.real(np.conj(receiver @ velocity) * force)
     carried = [joint.name in network.paths for joint in network.joints for _ in joint.dofs]
-    return Reference(
-        force, velocity, input_power, path_power, ratio(path_power[carried].sum(axis=0), input_power)
-    )
+    return Reference(force, velocity, input_power, path_power, ratio(path_power[carried].sum(axis=0), input_power))
 
 
 def _solve_refined(A: ExtendedComplex, b: Complex) -> Complex:

@@ -62,7 +62,7 @@ class Synthesis:
     def bytes_per_line(self) -> int:
         """Working set of one frequency line."""
         n_p, N = self.P.shape
-        return 16 * (N * (1 + 3 * len(self.loads)) + 5 * n_p**2 + 4 * n_p * len(self.loads))
+        return int(16 * (N * (1 + 3 * len(self.loads)) + 5 * n_p**2 + 4 * n_p * len(self.loads)))
 
     def solve(self, omega: Real) -> Response:
         """Coupled response at the angular frequencies `omega` (rad/s, all positive)."""
@@ -70,7 +70,7 @@ class Synthesis:
         response = modal_response(network.eigenvalues, network.damping, omega)
         free, own = self._free_motion(response, omega)
         W = self._interface_mobility(response)
-        per_frequency = 1.0 / (1j * omega)
+        per_frequency = np.asarray(1.0 / (1j * omega), complex)
         A = self._joint_force(W, per_frequency)
         diagonal = np.arange(len(P))
         A[diagonal, diagonal] += 1.0

@@ -60,14 +60,15 @@ def time_twin(
             assert output.joint is not None
             i = joints[output.joint].start + output.dof
             rows_x[k, :N], rows_x[k, N:], rows_u[k] = force_x[i], force_s[i], force_u[i]
-        elif output.quantity == "displacement":
+            continue
+        if output.row is None:
+            raise InputError(f"{output.name} is a power, not linear in the state; compute it from force and velocity")
+        if output.quantity == "displacement":
             rows_x[k, :N] = output.row / w
         elif output.quantity == "velocity":
             rows_x[k, N:], rows_u[k] = output.row, output.row @ slip
-        elif output.quantity == "acceleration":
-            rows_x[k], rows_u[k] = output.row @ A[N:], output.row @ B[N:]
         else:
-            raise InputError(f"{output.name} is a power, not linear in the state; compute it from force and velocity")
+            rows_x[k], rows_u[k] = output.row @ A[N:], output.row @ B[N:]
     return TimeTwin(A, B, rows_x, rows_u, inputs, chosen)
 
 

@@ -29,9 +29,7 @@ def state_space(network: ModalNetwork) -> control.StateSpace:
         raise MissingExtraError("python-control", "control") from error
     twin = time_twin(network)
     modes = [
-        f"{name}/mode_{k + 1}"
-        for name, block in network.components.items()
-        for k in range(block.stop - block.start)
+        f"{name}/mode_{k + 1}" for name, block in network.components.items() for k in range(block.stop - block.start)
     ]
     return control.StateSpace(
         twin.A,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -59,10 +60,25 @@ def reference_checks(model: Model, quiet: bool = False) -> list[Check]:
     gross = abs(every.path_power).sum(axis=0)
     what = f"on {len(omega)} lines, relative to the largest of its kind on the line"
     return [
-        Check("interface forces against the unsynthesised solution", _force_deviation(modal, solved.force[:, 0], reference.force), 1e-9, what),
-        Check("alpha against the unsynthesised solution", float(np.max(abs(flow.share() / reference.alpha - 1))), 1e-8, "relative"),
+        Check(
+            "interface forces against the unsynthesised solution",
+            _force_deviation(modal, solved.force[:, 0], reference.force),
+            1e-9,
+            what,
+        ),
+        Check(
+            "alpha against the unsynthesised solution",
+            float(np.max(abs(flow.share() / reference.alpha - 1))),
+            1e-8,
+            "relative",
+        ),
         Check("input power against the sum of dissipated powers", float(balance.max()), 1e-8, "relative, on all lines"),
-        Check("net power returned to the source", float(np.max(-every.transmitted_power / gross)), 1e-10, "relative to what flows, on all lines; negative: none"),
+        Check(
+            "net power returned to the source",
+            float(np.max(-every.transmitted_power / gross)),
+            1e-10,
+            "relative to what flows, on all lines; negative: none",
+        ),
         Check("alpha above 1", float(every.share().max() - 1.0), 1e-10, "on all lines; negative: none"),
     ]
 
@@ -80,7 +96,7 @@ def _force_deviation(network: Any, found: Any, expected: Any) -> float:
 def band_means(values: Real, f: Real) -> list[tuple[str, float]]:
     """Mean over the lines of each band that holds lines."""
     means = []
-    for low, high in zip(BANDS[:-1], BANDS[1:]):
+    for low, high in pairwise(BANDS):
         inside = (f >= low) & ((f < high) | ((high == 5000.0) & (f == high)))
         if high == np.inf:
             inside &= f > 5000.0
@@ -116,9 +132,7 @@ def as_dict(flow: xr.Dataset, checks: list[Check]) -> dict[str, Any]:
     data["path_alpha"] = {p: flow.path_alpha.sel(path=p).values for p in flow.path.values}
     data["dissipated_power"] = {e: flow.dissipated_power.sel(element=e).values for e in flow.element.values}
     if checks:
-        data["checks"] = [
-            {"name": c.name, "figure": c.figure, "limit": c.limit, "passed": c.passed} for c in checks
-        ]
+        data["checks"] = [{"name": c.name, "figure": c.figure, "limit": c.limit, "passed": c.passed} for c in checks]
     return data
 
 
@@ -126,7 +140,11 @@ def _print(flow: xr.Dataset, checks: list[Check]) -> None:
     f = flow.frequency.values
     table = Table(title="Power ratio, band means", title_justify="left", show_edge=False)
     table.add_column("path")
-    rows = {"alpha (all)": flow.alpha.values, "force paths": flow.alpha_force.values, "moment paths": flow.alpha_moment.values}
+    rows = {
+        "alpha (all)": flow.alpha.values,
+        "force paths": flow.alpha_force.values,
+        "moment paths": flow.alpha_moment.values,
+    }
     rows |= {str(path): flow.path_alpha.sel(path=path).values for path in flow.path.values}
     for name, _ in band_means(f, f):
         table.add_column(name, justify="right")

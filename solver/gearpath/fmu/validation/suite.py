@@ -76,7 +76,7 @@ def validate(
 
 
 def kind_of(path: Path) -> str:
-    """"native" or "python"; raises InputError where the file is not an FMU of Gearpath."""
+    """ "native" or "python"; raises InputError where the file is not an FMU of Gearpath."""
     try:
         with zipfile.ZipFile(path) as archive:
             names = archive.namelist()

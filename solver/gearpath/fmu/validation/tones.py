@@ -78,14 +78,12 @@ def run_tones(
         amplitude = amplitude / (load.equivalent_mass * (2 * np.pi * frequency) ** 2)
     amplitude = amplitude * np.exp(1j * np.arange(len(frequency)) ** 2)  # spread phases: no common peak
     first, samples = round(settle / step), round(1.0 / (BASE * step))
-    t = step * np.arange(first + samples)
+    t = np.asarray(step * np.arange(first + samples), float)
     u = np.zeros(len(t))
     for f, a in zip(frequency, amplitude):
         u += np.real(a * np.exp(2j * np.pi * f * (t - t[first])))
     u *= smooth_ramp(t, settle / 2.0)
-    record = fmu.run(
-        {load.name: u}, step, outputs, record_from=first, interpolate=fmu.interpolates, progress=progress
-    )
+    record = fmu.run({load.name: u}, step, outputs, record_from=first, interpolate=fmu.interpolates, progress=progress)
     return Steady(frequency, amplitude, outputs, record, step)
 
 
@@ -152,7 +150,10 @@ def energy_checks(network: ModalNetwork, load: Load, steady: Steady, interpolate
     put_in = 0.5 * float(np.real(np.vdot(drive, velocity)))
     through = sum(float(np.mean(steady.column(f"{name}.power"))) for name in network.paths)
     flow = power_flow(replace(network, excitation=load.name), omega)
-    dissipated, transmitted = abs(drive) ** 2 @ flow.dissipated_power.sum(axis=0), abs(drive) ** 2 @ flow.transmitted_power
+    dissipated, transmitted = (
+        abs(drive) ** 2 @ flow.dissipated_power.sum(axis=0),
+        abs(drive) ** 2 @ flow.transmitted_power,
+    )
     return [
         Check(
             "energy balance: input",

@@ -1,0 +1,5 @@
+"""`python -m gearpath`: the command line."""
+
+from .cli import main
+
+main()
