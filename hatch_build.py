@@ -72,9 +72,7 @@ def build(runtime: Path = RUNTIME) -> bool:
         _write(runtime / "binaries" / file, content)
     for source in [*_sources(), *(headers / header for header in HEADERS)]:
         _write(runtime / "sources" / source.name, source.read_bytes())
-    for stale in (
-        {p.name for p in (runtime / "sources").iterdir()} - set(wanted["sources"]) - set(wanted["headers"])
-    ):
+    for stale in {p.name for p in (runtime / "sources").iterdir()} - set(wanted["sources"]) - set(wanted["headers"]):
         (runtime / "sources" / stale).unlink()
     _write(runtime / "LICENSE.txt", (ROOT / "LICENSE").read_bytes())
     wanted["binaries"] = {file: _hash(content) for file, content in sorted(binaries.items())}
@@ -171,9 +169,7 @@ def _zig(arguments: Sequence[str], folder: Path) -> None:
         command, cwd=folder, env={**caches, **os.environ}, capture_output=True, text=True, check=False
     )
     if done.returncode:
-        raise RuntimeError(
-            f"the FMU runtime did not compile:\n{' '.join(command)}\n{done.stdout}{done.stderr}"
-        )
+        raise RuntimeError(f"the FMU runtime did not compile:\n{' '.join(command)}\n{done.stdout}{done.stderr}")
 
 
 def _hash(content: bytes) -> str:

@@ -10,9 +10,7 @@ import numpy as np
 from fmpy.model_description import ModelDescription, read_model_description
 
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
-LOGGER = ct.CFUNCTYPE(
-    None, ct.c_void_p, ct.c_char_p, ct.c_int, ct.c_char_p, ct.c_char_p
-)  # the varargs stay unread
+LOGGER = ct.CFUNCTYPE(None, ct.c_void_p, ct.c_char_p, ct.c_int, ct.c_char_p, ct.c_char_p)  # the varargs stay unread
 
 
 class Callbacks(ct.Structure):
@@ -53,9 +51,7 @@ class Fmu:
             )
         return Unpacked(folder, description, ct.CDLL(str(library)))
 
-    def __init__(
-        self, unpacked: Unpacked, *, name=b"it", kind=1, guid=None, location=None, logging=0
-    ) -> None:
+    def __init__(self, unpacked: Unpacked, *, name=b"it", kind=1, guid=None, location=None, logging=0) -> None:
         self.unpacked, self.messages, self.categories = unpacked, [], []
         library = unpacked.library
         for function in ("fmi2SetupExperiment", "fmi2DoStep"):
@@ -76,9 +72,7 @@ class Fmu:
         guid = unpacked.description.guid.encode() if guid is None else guid
         location = unpacked.location if location is None else location
         location = location.encode() if isinstance(location, str) else location
-        self.c = ct.c_void_p(
-            library.fmi2Instantiate(name, kind, guid, location, ct.byref(self.callbacks), 0, logging)
-        )
+        self.c = ct.c_void_p(library.fmi2Instantiate(name, kind, guid, location, ct.byref(self.callbacks), 0, logging))
         self.reference = {v.name: v.valueReference for v in unpacked.description.modelVariables}
 
     def _log(self, _environment, _name, _status, category, message):
@@ -99,9 +93,7 @@ class Fmu:
         return (ct.c_uint * len(numbers))(*numbers)
 
     def set(self, values: dict) -> int:
-        return self.call(
-            "fmi2SetReal", self.references(values), ct.c_size_t(len(values)), reals(values.values())
-        )
+        return self.call("fmi2SetReal", self.references(values), ct.c_size_t(len(values)), reals(values.values()))
 
     def set_slopes(self, values: dict, order: int = 1) -> int:
         orders = (ct.c_int * len(values))(*[order] * len(values))

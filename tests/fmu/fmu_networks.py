@@ -9,9 +9,7 @@ ELASTIC, RIGID, CASING = 20, 4, 3
 N = RIGID + ELASTIC + CASING
 
 
-def gearbox(
-    seed: int = 1, *, excitation="mesh.transmission_error", mesh_moves_bearings=False
-) -> ModalNetwork:
+def gearbox(seed: int = 1, *, excitation="mesh.transmission_error", mesh_moves_bearings=False) -> ModalNetwork:
     """With `mesh_moves_bearings` the mesh displacement d reaches the bearings directly (P d is not zero)."""
     rng = np.random.default_rng(seed)
     hertz = np.geomspace(1.5e3, 500e3, ELASTIC)
@@ -46,9 +44,7 @@ def gearbox(
         name, rows = f"mount_{i}", casing_row("uy", x, z)[None]
         one = np.ones((1, 1))
         joints.append(
-            JointRows(
-                name, "mount", ("uy",), rows, 0 * rows, 1e7 * one, 440.0 * one, scalar=True, grounded=True
-            )
+            JointRows(name, "mount", ("uy",), rows, 0 * rows, 1e7 * one, 440.0 * one, scalar=True, grounded=True)
         )
         outputs.append(Output(f"{name}.force_uy", "N", "force", joint=name, dof=0))
     outputs += [

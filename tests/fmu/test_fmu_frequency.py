@@ -91,7 +91,5 @@ def test_undamped_resonance_is_an_error_not_nan(tmp_path):
     for hertz in [resonance, *(np.nextafter(resonance, d * np.inf) for d in (-1, 1))]:
         fmu.set({"frequency": hertz})
         values, status = fmu.try_get(["alpha", "frf.bearing_1.force_uy.re"])
-        assert (status == OK and np.isfinite(values).all()) or (
-            status == ERROR and "singular" in fmu.messages[-1]
-        )
+        assert (status == OK and np.isfinite(values).all()) or (status == ERROR and "singular" in fmu.messages[-1])
     fmu.free()

@@ -69,9 +69,7 @@ def windows_path(tmp_path_factory):
     subprocess.run([compiler, "-I", source, *files, "-o", folder / "probe"], check=True)
 
     def decode(location):
-        return subprocess.run(
-            [folder / "probe", location], capture_output=True, text=True, check=False
-        ).stdout
+        return subprocess.run([folder / "probe", location], capture_output=True, text=True, check=False).stdout
 
     return decode
 

@@ -133,9 +133,7 @@ def dependencies(unpacked, section):
 def test_dependencies_on_inputs(tmp_path, moved):
     """Change one input after another at a moved state: outputs change where, and only where, declared."""
     network = gearbox(mesh_moves_bearings=moved)
-    path = export(
-        network, tmp_path / "d.fmu", frequency=3000.0
-    )  # where the input power is positive in both cases
+    path = export(network, tmp_path / "d.fmu", frequency=3000.0)  # where the input power is positive in both cases
     unpacked = Fmu.unpack(path, tmp_path / "d")
     fmu = Fmu(unpacked)
     fmu.start()
@@ -186,9 +184,7 @@ def test_binaries_of_all_platforms(fmu_path):
         "aarch64-darwin/gearbox.dylib": (b"\xcf\xfa\xed\xfe", 4, 0x000C),
     }
     with zipfile.ZipFile(fmu_path) as archive:
-        assert {n for n in archive.namelist() if n.startswith("binaries/")} == {
-            f"binaries/{n}" for n in magic
-        }
+        assert {n for n in archive.namelist() if n.startswith("binaries/")} == {f"binaries/{n}" for n in magic}
         for name, (start, at, machine) in magic.items():
             content = archive.read(f"binaries/{name}")
             assert content.startswith(start), name
@@ -341,9 +337,7 @@ def test_smallest_network(tmp_path):
     from gearpath.network.records import JointRows, Load, Output
 
     one = np.ones((1, 1))
-    mount = JointRows(
-        "mount", "mount", ("uy",), 0.5 * one, 0 * one, 100.0 * one, 0 * one, scalar=True, grounded=True
-    )
+    mount = JointRows("mount", "mount", ("uy",), 0.5 * one, 0 * one, 100.0 * one, 0 * one, scalar=True, grounded=True)
     for outputs in ((), (Output("x", "m", "displacement", row=np.array([0.5])),)):
         network = ModalNetwork(
             "oscillator", {"mass": slice(0, 1)}, {}, np.zeros(1), (mount,),

@@ -115,9 +115,7 @@ def test_power_is_force_times_receiver_velocity(fmu, network):
     joint = network.joints[0]
     casing = network.components["casing"]
     # the casing's three rates follow from three velocities of its points
-    probes = [
-        o for o in network.outputs if o.quantity == "velocity" and o.name.startswith(("bearing", "casing"))
-    ]
+    probes = [o for o in network.outputs if o.quantity == "velocity" and o.name.startswith(("bearing", "casing"))]
     rows = np.array([o.row[casing] for o in probes])
     names = ["bearing_1.power", "bearing_1.force_uy", "bearing_1.force_rx", *(o.name for o in probes)]
     y = fmu.run(inputs, U, 5e-5, names)
@@ -178,9 +176,7 @@ def test_parameters_change_during_the_run(fmu, network):
     U, h = signals(1000), 2e-5
     K, C = 0.3 * network.joints[0].stiffness, 2.0 * network.joints[0].damping
     K[0, 1] = K[1, 0] = -0.2 * K[0, 1]
-    second = network.with_joint("bearing_1", K, C).with_joint(
-        "mount_3", 5e6 * np.ones((1, 1)), np.zeros((1, 1))
-    )
+    second = network.with_joint("bearing_1", K, C).with_joint("mount_3", 5e6 * np.ones((1, 1)), np.zeros((1, 1)))
     object.__setattr__(second, "modal_damping", {"gear_train": 0.1})
     y1, names, x = held(network, U[:500], h)
     A, B, Cm, D, _ = oracle.time_system(second)
@@ -264,3 +260,14 @@ def test_a_thousand_instances(unpacked):
     assert found == pytest.approx(found[1] * np.arange(1000), rel=1e-12)
     for instance in instances:
         instance.free()
+
+
+def test_the_oldest_step_size_is_forgotten(unpacked):
+    """Four are kept; a fifth takes the place of the one not used for longest."""
+    fmu, t = Fmu(unpacked, logging=1), 0.0
+    fmu.start()
+    for h, formed in [(1, 1), (2, 2), (3, 3), (4, 4), (1, 4), (5, 5), (1, 5), (3, 5), (4, 5), (2, 6), (5, 7)]:
+        assert fmu.step(t, h * 1e-5) == OK
+        t += h * 1e-5
+        assert sum("discretised" in message for message in fmu.messages) == formed, h
+    fmu.free()

@@ -15,9 +15,7 @@ from .variables import Variable
 
 MAGIC, VERSION, BYTE_ORDER = b"GEARPATH", 1, 0x01020304
 NONE = 0x7FFFFFFF  # "no such index", GP_NONE
-RIGID_SCALE = (
-    2.0 * np.pi * 1000.0
-)  # rad/s; scales q where a mode has no eigenfrequency, so that A is balanced
+RIGID_SCALE = 2.0 * np.pi * 1000.0  # rad/s; scales q where a mode has no eigenfrequency, so that A is balanced
 QUANTITIES = ("displacement", "velocity", "acceleration", "force", "power")  # GP_DISPLACEMENT ...
 LARGEST_COUNT = 1 << 13  # of modes, joints, loads ...: what the runtime accepts
 
@@ -48,9 +46,7 @@ def payload(network: ModalNetwork, variables: Sequence[Variable], frequency: flo
         0,
     )
     if max(*counts[:4], *counts[5:7]) > LARGEST_COUNT:
-        raise InputError(
-            f"the network is too large for an FMU (at most {LARGEST_COUNT} modes, joints or outputs)"
-        )
+        raise InputError(f"the network is too large for an FMU (at most {LARGEST_COUNT} modes, joints or outputs)")
     zero = np.zeros(N)
     reals = [
         np.array([frequency]),
@@ -62,12 +58,8 @@ def payload(network: ModalNetwork, variables: Sequence[Variable], frequency: flo
         np.concatenate([_symmetric(joint.stiffness).ravel() for joint in network.joints]),
         np.concatenate([_symmetric(joint.damping).ravel() for joint in network.joints]),
         np.vstack([load.column for load in network.loads]),
-        np.vstack(
-            [zero if load.mesh_displacement is None else load.mesh_displacement for load in network.loads]
-        ),
-        np.vstack(
-            [zero if output.row is None else output.row for output in network.outputs] or [np.zeros((0, N))]
-        ),
+        np.vstack([zero if load.mesh_displacement is None else load.mesh_displacement for load in network.loads]),
+        np.vstack([zero if output.row is None else output.row for output in network.outputs] or [np.zeros((0, N))]),
     ]
     starts = np.cumsum([0, *(len(joint.dofs) for joint in network.joints)])
     block_starts = np.cumsum([0, *blocks])
@@ -94,9 +86,7 @@ def payload(network: ModalNetwork, variables: Sequence[Variable], frequency: flo
     parts = [struct.pack("<12I", *counts)]
     for array in reals:
         if not np.isfinite(array).all():
-            raise InputError(
-                "a matrix of the network holds a number that is not finite, so no FMU can be made of it"
-            )
+            raise InputError("a matrix of the network holds a number that is not finite, so no FMU can be made of it")
         parts.append(np.ascontiguousarray(array, dtype="<f8").tobytes())
     parts += [np.asarray(index, dtype="<u4").tobytes() for index in indices]
     return b"".join(_padded(part) for part in [*parts, text])

@@ -168,11 +168,7 @@ def _variables(root: ET.Element, variables: Sequence[Variable]) -> None:
         if variable.causality == "output":
             attributes["initial"] = "calculated"
         real = {"unit": variable.unit}
-        if (
-            variable.unit in _DISPLAY
-            and variable.kind is not Kind.FRF_REAL
-            and variable.kind is not Kind.FRF_IMAG
-        ):
+        if variable.unit in _DISPLAY and variable.kind is not Kind.FRF_REAL and variable.kind is not Kind.FRF_IMAG:
             real["displayUnit"] = _DISPLAY[variable.unit][0]
         for attribute, value in (
             ("min", variable.minimum),
@@ -196,6 +192,4 @@ def _structure(root: ET.Element, variables: Sequence[Variable]) -> None:
                 continue
             names = variable.dependencies if section == "Outputs" else variable.initial_dependencies
             places = sorted(place[name] for name in names)
-            ET.SubElement(
-                parent, "Unknown", index=str(place[variable.name]), dependencies=" ".join(map(str, places))
-            )
+            ET.SubElement(parent, "Unknown", index=str(place[variable.name]), dependencies=" ".join(map(str, places)))

@@ -44,9 +44,7 @@ def export_native(
         raise InputError(
             f"the model identifier {model_identifier!r} is not a C name; use letters, digits and underscores"
         )
-    if not (
-        np.isfinite([start_time, stop_time, step_size]).all() and start_time < stop_time and step_size > 0
-    ):
+    if not (np.isfinite([start_time, stop_time, step_size]).all() and start_time < stop_time and step_size > 0):
         raise InputError(
             f"start {start_time} s, stop {stop_time} s and step {step_size} s are no experiment; "
             "start must lie before stop, and the step be positive"
@@ -100,9 +98,7 @@ def _check_network(network: ModalNetwork) -> None:
         raise InputError(f"{network.name}: an eigenvalue is negative, so that the model is unstable")
     for name, ratio in network.modal_damping.items():
         if not 0 <= ratio < 1:
-            raise InputError(
-                f"{name}.modal_damping: {ratio} is no damping ratio; give at least 0 and less than 1"
-            )
+            raise InputError(f"{name}.modal_damping: {ratio} is no damping ratio; give at least 0 and less than 1")
     for joint in network.joints:
         for what, matrix in (("stiffness", joint.stiffness), ("damping", joint.damping)):
             scale = np.abs(matrix).max(initial=0.0)

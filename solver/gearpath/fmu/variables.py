@@ -36,9 +36,7 @@ class Variable:
 
     name: str
     kind: Kind
-    index: tuple[
-        int, int, int
-    ]  # into the network's loads, joints, outputs ...; what it means depends on the kind
+    index: tuple[int, int, int]  # into the network's loads, joints, outputs ...; what it means depends on the kind
     causality: Literal["input", "parameter", "output"]
     unit: str
     description: str
@@ -75,9 +73,7 @@ def variable_table(network: ModalNetwork, frequency: float) -> tuple[Variable, .
         raise InputError(f"the start value of the frequency input is {frequency} Hz; give a positive number")
     excitation = next((load for load in network.loads if load.name == network.excitation), None)
     if excitation is None:
-        raise InputError(
-            f"the excitation {network.excitation!r} is none of the network's loads; name one of them"
-        )
+        raise InputError(f"the excitation {network.excitation!r} is none of the network's loads; name one of them")
     for path in network.paths:
         if path not in {joint.name for joint in network.joints}:
             raise InputError(f"the path {path!r} is none of the network's joints; name one of them")
@@ -96,9 +92,7 @@ def variable_table(network: ModalNetwork, frequency: float) -> tuple[Variable, .
                 f"{name!r} cannot name an FMU variable; use letters, digits and underscores, parted by dots"
             )
         if variable.name in seen:
-            raise InputError(
-                f"two FMU variables are called {variable.name!r}; rename one of what they belong to"
-            )
+            raise InputError(f"two FMU variables are called {variable.name!r}; rename one of what they belong to")
         seen.add(variable.name)
     return table
 
@@ -117,9 +111,7 @@ def _inputs(network: ModalNetwork, frequency: float) -> Iterable[Variable]:
     for k, load in enumerate(network.loads):
         error = load.is_transmission_error
         what = "Transmission error in the gear mesh" if error else "Force or moment from outside"
-        yield Variable(
-            load.name, Kind.INPUT, (k, 0, 0), "input", load.unit, what, _load_nominal(load), start=0.0
-        )
+        yield Variable(load.name, Kind.INPUT, (k, 0, 0), "input", load.unit, what, _load_nominal(load), start=0.0)
     yield Variable(
         "frequency",
         Kind.FREQUENCY,
@@ -203,9 +195,7 @@ def _time_outputs(network: ModalNetwork) -> Iterable[Variable]:
         )
 
 
-def _frequency_outputs(
-    network: ModalNetwork, excitation: Load, parameters: tuple[str, ...]
-) -> Iterable[Variable]:
+def _frequency_outputs(network: ModalNetwork, excitation: Load, parameters: tuple[str, ...]) -> Iterable[Variable]:
     initial = ("frequency", *parameters)
 
     def ratio(name: str, kind: Kind, index: int, what: str) -> Variable:
