@@ -48,4 +48,4 @@ def test_chunks_cover_every_line_once_and_stay_bounded():
     parts = list(chunks(10_001, 16_000))
     assert [part.start for part in parts[1:]] == [part.stop for part in parts[:-1]]
     assert (parts[0].start, parts[-1].stop) == (0, 10_001)
-    assert max(part.stop - part.start for part in parts) * 16_000 <= 5 << 20
+    assert max(part.stop - part.start for part in parts) * 16_000 <= 16 << 20

@@ -83,6 +83,9 @@ class GearTrain:
     meshes: Mapping[str, Mesh]
     modal_damping: float = 0.0
 
+    def __hash__(self) -> int:
+        return hash((*self.shafts.items(), *self.meshes.items(), self.modal_damping))
+
     def structure(
         self,
         dofs: Sequence[str],

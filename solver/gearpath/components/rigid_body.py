@@ -21,6 +21,9 @@ class RigidBody:
     centre_of_gravity: Vector = (0.0, 0.0, 0.0)
     modal_damping: float = field(default=0.0, init=False, repr=False)  # a rigid body has no elastic modes
 
+    def __hash__(self) -> int:
+        return hash((self.mass, *self.inertia.items(), self.centre_of_gravity))
+
     def inertia_matrix(self) -> Real:
         """Mass matrix of all six coordinates (6 x 6); off-diagonal inertias are the tensor's own elements."""
         M = np.diag([self.mass] * 3 + [0.0] * 3)

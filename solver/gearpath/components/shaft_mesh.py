@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -95,19 +96,20 @@ def mesh_shaft(shaft: Shaft, bearings: Sequence[float], dofs: tuple[str, ...]) -
             f"elements has {len(counts)} entries for {spans} spans between the stations "
             f"{', '.join(f'{z:g}' for z in stations)} m; give {spans} numbers, or one for all spans"
         )
-    nodes = np.concatenate(
-        [[0.0]] + [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(stations[:-1], stations[1:], counts)]
-    )
+    nodes = np.concatenate([[0.0], *(np.linspace(a, b, n + 1)[1:] for (a, b), n in zip(pairwise(stations), counts))])
     picked, width = _picked(dofs), len(dofs)
-    chosen = np.concatenate([picked, picked + 6])
+    chosen = np.ix_(*[np.concatenate([picked, picked + 6])] * 2)
     M, K = (np.zeros((len(nodes) * width, len(nodes) * width)) for _ in range(2))
-    for e in range(len(nodes) - 1):
-        length = float(nodes[e + 1] - nodes[e])
-        section = section_at(shaft, float(nodes[e] + nodes[e + 1]) / 2.0)
-        element_K, element_M = timoshenko_element(section, shaft.material, length, shaft.shear_coefficient)
-        block = slice(e * width, (e + 2) * width)
-        K[block, block] += element_K[np.ix_(chosen, chosen)]
-        M[block, block] += element_M[np.ix_(chosen, chosen)]
+    first = 0
+    for (start, end), count in zip(pairwise(stations), counts):  # the elements of a span are all alike
+        section = section_at(shaft, (start + end) / 2.0)
+        element = timoshenko_element(section, shaft.material, (end - start) / count, shaft.shear_coefficient)
+        element_K, element_M = (matrix[chosen] for matrix in element)
+        for e in range(first, first + count):
+            block = slice(e * width, (e + 2) * width)
+            K[block, block] += element_K
+            M[block, block] += element_M
+        first += count
     for disk in shaft.disks:
         node = int(np.argmin(abs(nodes - disk.z)))
         at = node * width + np.arange(width)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import scipy.linalg
@@ -26,6 +27,7 @@ class Network:
 
     system: System
     structures: Mapping[str, Structure]
+    bases: Mapping[str, Modes]  # all free-free modes of each structure
     blocks: Mapping[str, slice]  # component -> its coordinates
     joints: tuple[JointRows, ...]
     loads: tuple[Load, ...]
@@ -39,7 +41,7 @@ class Network:
 
     def modal(self) -> ModalNetwork:
         """The same network in all free-free modes of its components (no truncation)."""
-        return to_modes(self, {name: modes(structure) for name, structure in self.structures.items()})
+        return to_modes(self, self.bases)
 
 
 def assemble(system: System) -> Network:
@@ -47,7 +49,8 @@ def assemble(system: System) -> Network:
     ports = _Ports(system)
     joints = tuple(_joint_rows(ports, name, joint) for name, joint in system.joints.items())
     excitation, loads = _loads(ports, system)
-    return Network(system, ports.structures, ports.blocks, joints, loads, _outputs(ports, system, joints), excitation)
+    outputs = _outputs(ports, system, joints)
+    return Network(system, ports.structures, ports.bases, ports.blocks, joints, loads, outputs, excitation)
 
 
 def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
@@ -86,6 +89,25 @@ def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
     )
 
 
+@lru_cache(maxsize=32)
+def _solved(
+    component: Component,
+    dofs: tuple[str, ...],
+    stations: tuple[tuple[str, ShaftPoint], ...],
+    probes: tuple[tuple[str, ShaftPoint], ...],
+    points: tuple[tuple[str, Vector], ...],
+) -> tuple[Structure, Modes]:
+    """A component's structure and modes; remembered, because bearings and mounts are exchanged without touching it."""
+    if isinstance(component, GearTrain):
+        structure = component.structure(dofs, dict(stations), dict(probes))
+    else:
+        structure = component.structure(dofs, dict(points))
+    basis = modes(structure)
+    for array in (structure.mass, structure.stiffness, structure.rigid_modes, basis.eigenvalues, basis.shapes):
+        array.flags.writeable = False  # shared between all networks that hold this component
+    return structure, basis
+
+
 class _Ports:
     """Builds each component's structure with the ports that the system asks for, and hands out their rows."""
 
@@ -115,26 +137,17 @@ class _Ports:
             ask(item.port, item.at, probes)
         if isinstance(system.excitation, PointExcitation):
             ask(system.excitation.port, system.excitation.at, probes)
-        self.structures = {
-            name: self._build(component, stations[name], probes[name], points[name])
+        solved = {
+            name: _solved(component, system.dofs, *(tuple(group[name].items()) for group in (stations, probes, points)))
             for name, component in system.components.items()
         }
+        self.structures = {name: structure for name, (structure, _) in solved.items()}
+        self.bases = {name: basis for name, (_, basis) in solved.items()}
         ends = np.cumsum([structure.size for structure in self.structures.values()])
         self.size = int(ends[-1])
         self.blocks = {
             name: slice(int(end) - self.structures[name].size, int(end)) for name, end in zip(self.structures, ends)
         }
-
-    def _build(
-        self,
-        component: Component,
-        stations: Mapping[str, ShaftPoint],
-        probes: Mapping[str, ShaftPoint],
-        points: Mapping[str, Vector],
-    ) -> Structure:
-        if isinstance(component, GearTrain):
-            return component.structure(self.system.dofs, stations, probes)
-        return component.structure(self.system.dofs, points)
 
     def embed(self, component: str, rows: Real) -> Real:
         """Rows on one component's coordinates as rows on all coordinates."""

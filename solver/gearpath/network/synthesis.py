@@ -56,7 +56,8 @@ class Synthesis:
         self.network, self.loads = network, tuple(loads)
         self.P = network.relative
         self._residues = [_Residues.of(self.P, block) for block in network.components.values()]
-        self._blocks = list(zip(network.joint_slices().values(), network.joints))
+        K, C = network.interface_matrices()
+        self._joints = np.vstack([C, K])
 
     @property
     def bytes_per_line(self) -> int:
@@ -70,12 +71,11 @@ class Synthesis:
         response = modal_response(network.eigenvalues, network.damping, omega)
         free, own = self._free_motion(response, omega)
         W = self._interface_mobility(response)
-        per_frequency = np.asarray(1.0 / (1j * omega), complex)
-        A = self._joint_force(W, per_frequency)
+        A = self._joint_force(W, omega)
         diagonal = np.arange(len(P))
         A[diagonal, diagonal] += 1.0
         relative = real_times_complex(P, free if own is None else free + own)
-        g = solve_lines(A, self._joint_force(relative, per_frequency))
+        g = solve_lines(A, self._joint_force(relative, omega))
         elastic = free - response[:, None] * real_times_complex(P.T, g)
         return Response(g, elastic, elastic if own is None else elastic + own)
 
@@ -87,14 +87,13 @@ class Synthesis:
             W[np.ix_(part.rows, part.rows)] += packed[part.unpack]
         return W
 
-    def _joint_force(self, motion: Complex, per_frequency: Complex) -> Complex:
-        """Z @ motion for the block-diagonal Z = K/(i w) + C; motion (n_p, m, F)."""
-        out = np.empty_like(motion)
-        for rows, joint in self._blocks:
-            part = motion[rows]
-            out[rows] = real_times_complex(joint.damping, part)
-            out[rows] += per_frequency * real_times_complex(joint.stiffness, part)
-        return out
+    def _joint_force(self, motion: Complex, omega: Real) -> Complex:
+        """Z @ motion for Z = K/(i w) + C; motion (n_p, m, F)."""
+        both = real_times_complex(self._joints, motion)
+        viscous, elastic = both[: len(motion)], both[len(motion) :]
+        elastic *= -1j / omega
+        viscous += elastic
+        return viscous
 
     def _free_motion(self, response: Complex, omega: Real) -> tuple[Complex, Complex | None]:
         """Modal velocities of the uncoupled components under each load; and i w d e of transmission errors."""

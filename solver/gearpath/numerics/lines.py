@@ -8,7 +8,7 @@ from ..errors import AccuracyError
 from ..numerics.arrays import Complex, Real
 
 _BACKWARD_ERROR = 100 * np.finfo(float).eps  # componentwise; lines above it are solved again with pivoting
-_CHUNK_BYTES = 4 << 20  # working set of one chunk: stays in the cache of the processor
+_CHUNK_BYTES = 12 << 20  # working set of one chunk: large enough that Python's own share is small
 _MOST_LINES = 4096
 
 
@@ -35,15 +35,18 @@ def solve_lines(A: Complex, b: Complex) -> Complex:
     """
     n = len(A)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        U, y = A.copy(), b.copy()
+        # the right-hand sides ride along as columns; one scratch array for every rank-one update
+        U = np.concatenate([A, b], axis=1)
+        scratch = np.empty_like(U)
         for k in range(n - 1):
-            factor = U[k + 1 :, k] / U[k, k]
-            U[k + 1 :, k + 1 :] -= factor[:, None] * U[k, k + 1 :]
-            y[k + 1 :] -= factor[:, None] * y[k]
+            U[k + 1 :, k] /= U[k, k]
+            update = np.multiply(U[k + 1 :, k, None], U[k, k + 1 :], out=scratch[k + 1 :, k + 1 :])
+            U[k + 1 :, k + 1 :] -= update
+        y = U[:, n:].copy()
         for k in reversed(range(n)):
             y[k] /= U[k, k]
             if k:
-                y[:k] -= U[:k, k][:, None] * y[k]
+                y[:k] -= U[:k, k, None] * y[k]
         doubtful = np.flatnonzero(~(_backward_error(A, b, y) < _BACKWARD_ERROR))
     if len(doubtful):
         try:
