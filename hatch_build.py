@@ -2,7 +2,8 @@
 
 Runs when a wheel or an editable install is built; by hand: `python hatch_build.py` (needs hatchling, ziglang
 and fmpy). The result goes to `solver/gearpath/fmu/runtime/`: `binaries/<FMI 2 folder>/gearpath.<extension>`,
-`sources/` and `manifest.json`, which holds the hashes that decide whether anything has to be compiled again.
+`sources/`, `pythonfmu/` (the Python side of the python kind) and `manifest.json`, which holds the hashes that decide
+whether anything has to be compiled again.
 """
 
 import hashlib
@@ -72,6 +73,8 @@ def build(runtime: Path = RUNTIME) -> bool:
         _write(runtime / "binaries" / file, content)
     for source in [*_sources(), *(headers / header for header in HEADERS)]:
         _write(runtime / "sources" / source.name, source.read_bytes())
+    for slave in _slaves():
+        _write(runtime / "pythonfmu" / slave.name, slave.read_bytes())
     for stale in {p.name for p in (runtime / "sources").iterdir()} - set(wanted["sources"]) - set(wanted["headers"]):
         (runtime / "sources" / stale).unlink()
     _write(runtime / "LICENSE.txt", (ROOT / "LICENSE").read_bytes())
@@ -107,6 +110,10 @@ def _sources() -> list[Path]:
     return sorted(p for p in SOURCES.iterdir() if p.suffix in {".c", ".h"})
 
 
+def _slaves() -> list[Path]:
+    return sorted((SOURCES / "pythonfmu").glob("*.py"))
+
+
 def _header_folder() -> Path:
     # find_spec does not run fmpy, whose own imports are many
     spec = importlib.util.find_spec("fmpy")
@@ -124,6 +131,7 @@ def _manifest(headers: Path) -> dict[str, Any]:
             **{file: TARGETS[file] for file in TARGETS},
         },
         "sources": {p.name: _hash(p.read_bytes()) for p in _sources()},
+        "slaves": {p.name: _hash(p.read_bytes()) for p in _slaves()},
         "headers": {name: _hash((headers / name).read_bytes()) for name in HEADERS},
     }
 
@@ -133,11 +141,13 @@ def _is_current(runtime: Path, wanted: dict[str, Any]) -> bool:
         found = json.loads((runtime / "manifest.json").read_bytes())
         present = {file: _hash((runtime / "binaries" / file).read_bytes()) for file in [*TARGETS, UNIVERSAL]}
         copies = {p.name: _hash(p.read_bytes()) for p in (runtime / "sources").iterdir()}
+        slaves = {p.name: _hash(p.read_bytes()) for p in (runtime / "pythonfmu").iterdir()}
         licence = (runtime / "LICENSE.txt").read_bytes() == (ROOT / "LICENSE").read_bytes()
     except (OSError, ValueError):
         return False
     wanted = json.loads(json.dumps({**wanted, "binaries": present}))
-    return bool(found == wanted and licence and copies == {**wanted["sources"], **wanted["headers"]})
+    whole = copies == {**wanted["sources"], **wanted["headers"]} and slaves == wanted["slaves"]
+    return bool(found == wanted and licence and whole)
 
 
 def _compile(scratch: Path, file: str, headers: Path) -> bytes:

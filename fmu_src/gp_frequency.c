@@ -84,7 +84,7 @@ int gp_respond(GpResponse *p, const GpSystem *s, const GpModel *m, const double 
     const double push = m->is_error[m->excitation] ? w * w : 1; /* f = push * column */
     GpComplex *W = p->work, *T = W + n * n, *v0 = T + n * n;
     GpComplex power = {0, 0};
-    double check = 0;
+    double check = 0, held = 0;
     p->omega = w;
     for (size_t r = 0; r < N; r++) {
         GpComplex numerator, denominator;
@@ -116,9 +116,12 @@ int gp_respond(GpResponse *p, const GpSystem *s, const GpModel *m, const double 
         p->v[r].im += w * mesh[r];
         if (!finite_complex(p->v[r])) return -1;
     }
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) {
         if (!finite_complex(p->g[i])) return -1;
-    power_ratios(p, m, 0.5 * push * power.re);
+        /* what a transmission error does against joints that resist its rigid spin: 1/2 Re(conj(i w P d) g) */
+        held += gp_dot(s->P + i * N, mesh, N) * p->g[i].im;
+    }
+    power_ratios(p, m, 0.5 * (push * power.re + w * held));
     for (size_t j = 0; j < m->joints; j++) check += p->alpha[j];
     return gp_finite(check) ? 0 : -1;
 }

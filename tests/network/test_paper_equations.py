@@ -16,7 +16,9 @@ def foundation_mobility(omega):
     P_p = np.hstack([[[1, 0], [-z, 1], [x, 0]] for x, z in ENDS])
     P_b = np.array([[1, -z, x] for x, z in MOUNTS])
     M_a = np.diag([12.0, 0.15, 0.17])
-    return np.array([1j * w * P_p.T @ np.linalg.inv((1e7 + 1j * w * 440.0) * P_b.T @ P_b - w**2 * M_a) @ P_p for w in omega])
+    return np.array(
+        [1j * w * P_p.T @ np.linalg.inv((1e7 + 1j * w * 440.0) * P_b.T @ P_b - w**2 * M_a) @ P_p for w in omega]
+    )
 
 
 def test_eq_3_and_5_with_an_inverted_bearing_matrix(network, modal):

@@ -49,7 +49,7 @@ def export_native(
             f"start {start_time} s, stop {stop_time} s and step {step_size} s are no experiment; "
             "start must lie before stop, and the step be positive"
         )
-    _check_network(network)
+    check_network(network)
     variables = variable_table(network, frequency)
     binaries, sources = runtime_files.binaries(), runtime_files.sources()
     content = payload(network, variables, frequency)
@@ -90,7 +90,7 @@ def content_guid(*parts: bytes) -> str:
     return "{" + "-".join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32])) + "}"
 
 
-def _check_network(network: ModalNetwork) -> None:
+def check_network(network: ModalNetwork) -> None:
     """Refuse what the runtime could not compute."""
     if not network.joints or not network.loads:
         raise InputError(f"{network.name}: an FMU needs at least one joint and one load")

@@ -15,12 +15,12 @@ from ..errors import GearpathError, InputError, MissingExtraError
 from ..network.assemble import assemble
 from ..network.system import System
 from .description import Experiment, model_description
-from .native import _check_network, content_guid
+from .native import check_network, content_guid
 from .package import write_fmu
 from .python_bundle import bundle, model_source
 from .python_documentation import documentation
-from .python_table import DESIGN, entries, python_table
-from .variables import Variable
+from .python_table import entries, python_table
+from .variables import Kind, Variable
 
 _PLACEHOLDER = "{00000000-0000-0000-0000-000000000000}"
 _STUB = """from pythonfmu import Fmi2Slave
@@ -73,7 +73,7 @@ def export_python(
     _check_arguments(model_identifier, start_time, stop_time, step_size)
     base = _base_fmu(model_identifier)
     network = assemble(system).modal()
-    _check_network(network)
+    check_network(network)
     variables = python_table(system, network, frequency)
     experiment = Experiment(float(start_time), float(stop_time), float(step_size))
 
@@ -178,7 +178,7 @@ def _amended(content: bytes, variables: tuple[Variable, ...]) -> bytes:
     for name, meaning in _LOG_CATEGORIES.items():
         ET.SubElement(categories, "Category", name=name, description=meaning)
     for element, variable in zip(table, variables):
-        if variable.kind == DESIGN:
+        if variable.kind == Kind.DESIGN:
             element.set("variability", "fixed")
             element[0].attrib.pop("displayUnit", None)
     ET.indent(root, " ")

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 
@@ -14,7 +13,6 @@ from .python_design import design_parameters, redesign
 from .python_settings import Entry
 from .variables import Kind, Variable, variable_table
 
-DESIGN = cast(Kind, 100)  # the runtime in C knows no such kind
 _ABOVE_ZERO = float(np.nextafter(0.0, 1.0, dtype=np.float32))
 _NUDGE = 1e-3  # of the nominal value: by how much parameters are moved to find all dependencies
 
@@ -28,7 +26,7 @@ def python_table(system: System, network: ModalNetwork, frequency: float) -> tup
     designs = tuple(
         Variable(
             parameter.name,
-            DESIGN,
+            Kind.DESIGN,
             (k, 0, 0),
             "parameter",
             parameter.unit,
@@ -55,7 +53,7 @@ def entries(variables: Sequence[Variable], network: ModalNetwork) -> tuple[Entry
 
 def _entry(variable: Variable, network: ModalNetwork) -> Entry:
     index, row, column = variable.index
-    if variable.kind == DESIGN:
+    if variable.kind == Kind.DESIGN:
         return Entry(variable.name, "design")
     match variable.kind:
         case Kind.INPUT:

@@ -28,6 +28,7 @@ class Kind(IntEnum):
     JOINT_ALPHA = 7
     FRF_REAL = 8
     FRF_IMAG = 9
+    DESIGN = 10  # of the python kind only: what needs the components rebuilt
 
 
 @dataclass(frozen=True)
