@@ -7,6 +7,7 @@ import sys
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -60,8 +61,16 @@ def _toml_value(text: str) -> Any:
         return text  # a bare word is a string: --set components.casing.kind=rigid_body
 
 
+@dataclass(frozen=True)
+class Bar:
+    """A running progress bar."""
+
+    advance: Callable[[float], None]  # by an amount
+    describe: Callable[[str], None]  # what is being done
+
+
 @contextmanager
-def progress(title: str, total: float, quiet: bool = False) -> Iterator[Callable[[float], None]]:
+def progress(title: str, total: float, quiet: bool = False) -> Iterator[Bar]:
     """A progress bar on stderr that says how much of `total` is done."""
     columns = (
         TextColumn("{task.description}"),
@@ -71,7 +80,10 @@ def progress(title: str, total: float, quiet: bool = False) -> Iterator[Callable
     )
     with Progress(*columns, console=err, transient=True, disable=quiet) as bar:
         task = bar.add_task(title, total=total)
-        yield lambda amount: bar.advance(task, amount)
+        yield Bar(
+            lambda amount: bar.advance(task, amount),
+            lambda what: bar.update(task, description=f"{title}: {what}"),
+        )
 
 
 def print_json(data: Any) -> None:

@@ -20,8 +20,8 @@ def export_one(model: Model, path: Path, kind: str, fmi: str) -> Path:
 
 def validate_one(path: Path, model: Model, quiet: bool = False) -> ValidationReport:
     """Validate one FMU with progress."""
-    with console.progress(f"validating {path.name}", 1.0, quiet) as advance:
-        return api.validate_fmu(path, model, advance=advance)
+    with console.progress(f"validating {path.name}", 1.0, quiet) as bar:
+        return api.validate_fmu(path, model, message=bar.describe, advance=bar.advance)
 
 
 def build(model: Model, folder: Path) -> bool:

@@ -31,8 +31,8 @@ def run(model: Model, output: Path | None, check: bool, json: bool) -> bool:
     """Sweep the model, print or write the result; whether the check (if wanted) passed."""
     if output is not None and output.suffix != ".csv":
         raise InputError(f"{output}: is not a .csv file; name it so, or use --json for other formats")
-    with console.progress("power flow", model.frequency.points, quiet=json) as advance:
-        flow = api.power_flow(model, progress=advance)
+    with console.progress("power flow", model.frequency.points, quiet=json) as bar:
+        flow = api.power_flow(model, progress=bar.advance)
     checks = reference_checks(model, quiet=json) if check else []
     if output is not None:
         write_text(output, csv_text(flow))
