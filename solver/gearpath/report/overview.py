@@ -74,7 +74,8 @@ def _schematic(axes: Any, model: Model) -> None:
             contact = x + mesh.base_radii[0] * np.sign(_other_axis(train, mesh) - x)
             axes.plot(1e3 * z, 1e3 * contact, "o", color=MOMENT, ms=5, zorder=5)
     span = np.array([(place[2], place[0]) for _, place in places])
-    low, high = span.min(axis=0) - [0.03, 0.035], span.max(axis=0) + [0.03, 0.035]
+    margin = np.array([0.03, 0.035])
+    low, high = span.min(axis=0) - margin, span.max(axis=0) + margin
     _box(axes, low[0], low[1], *(high - low), "none", linewidth=2.2)
     for kind, (x, _, z) in places:
         if kind == "bearing":
