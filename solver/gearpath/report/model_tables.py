@@ -11,7 +11,7 @@ from ..components import GearTrain
 from ..components.dofs import is_rotation
 from ..joints import Joint, Port
 from ..joints.joint import Matrix
-from ..network.assemble import joint_place
+from ..network.ports import joint_place
 from ..network.system import MeshExcitation, System
 from .table import Table, table
 from .wording import given, listed, quantity

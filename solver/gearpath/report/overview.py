@@ -11,7 +11,7 @@ import numpy as np
 from ..components import GearTrain
 from ..errors import MissingExtraError
 from ..files import write_bytes
-from ..network.assemble import joint_place
+from ..network.ports import joint_place
 from .results import compute
 
 if TYPE_CHECKING:

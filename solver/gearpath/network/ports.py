@@ -1,0 +1,109 @@
+"""Ports: what each component is asked for, its structure with them, and their motion on all coordinates."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from ..components import GearTrain, Modes, ShaftPoint, Structure, modes
+from ..joints import Joint, Port
+from ..numerics.arrays import Real
+from .system import Actuator, Component, PointExcitation, Sensor, System, Vector
+
+
+@lru_cache(maxsize=32)
+def solve_component(
+    component: Component,
+    dofs: tuple[str, ...],
+    stations: tuple[tuple[str, ShaftPoint], ...],
+    probes: tuple[tuple[str, ShaftPoint], ...],
+    points: tuple[tuple[str, Vector], ...],
+) -> tuple[Structure, Modes]:
+    """A component's structure and modes; remembered, because bearings and mounts are exchanged without touching it."""
+    if isinstance(component, GearTrain):
+        structure = component.structure(dofs, dict(stations), dict(probes))
+    else:
+        structure = component.structure(dofs, dict(points))
+    basis = modes(structure)
+    for array in (structure.mass, structure.stiffness, structure.rigid_modes, basis.eigenvalues, basis.shapes):
+        array.flags.writeable = False  # shared between all networks that hold this component
+    return structure, basis
+
+
+class Ports:
+    """Builds each component's structure with the ports that the system asks for, and hands out their rows."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        stations: dict[str, dict[str, ShaftPoint]] = {name: {} for name in system.components}
+        probes: dict[str, dict[str, ShaftPoint]] = {name: {} for name in system.components}
+        points: dict[str, dict[str, Vector]] = {name: {} for name in system.components}
+        self.keys: dict[tuple[Port, Vector | None], str] = {}
+
+        def ask(port: Port, at: Vector | None, group: dict[str, dict[str, ShaftPoint]]) -> None:
+            if port.is_ground:
+                return
+            key = f"{len(self.keys)}"
+            self.keys.setdefault((port, at), key)
+            component = system.components[port.component]
+            if isinstance(component, GearTrain):
+                group[port.component][self.keys[port, at]] = shaft_point(component, port)
+            elif at is not None:
+                points[port.component][self.keys[port, at]] = at
+
+        for joint in system.joints.values():
+            for port in joint.between:
+                ask(port, joint_place(system, joint), stations)
+        others: list[Actuator | Sensor] = [*system.actuators.values(), *system.sensors.values()]
+        for item in others:
+            ask(item.port, item.at, probes)
+        if isinstance(system.excitation, PointExcitation):
+            ask(system.excitation.port, system.excitation.at, probes)
+        solved = {
+            name: solve_component(
+                component, system.dofs, *(tuple(group[name].items()) for group in (stations, probes, points))
+            )
+            for name, component in system.components.items()
+        }
+        self.structures = {name: structure for name, (structure, _) in solved.items()}
+        self.bases = {name: basis for name, (_, basis) in solved.items()}
+        ends = np.cumsum([structure.size for structure in self.structures.values()])
+        self.size = int(ends[-1])
+        self.blocks = {
+            name: slice(int(end) - self.structures[name].size, int(end)) for name, end in zip(self.structures, ends)
+        }
+
+    def embed(self, component: str, rows: Real) -> Real:
+        """Rows on one component's coordinates as rows on all coordinates."""
+        out = np.zeros((*rows.shape[:-1], self.size))
+        out[..., self.blocks[component]] = rows
+        return out
+
+    def motion(self, port: Port, at: Vector | None) -> Real:
+        """Motion of a port, (6, n); zero on the ground."""
+        if port.is_ground:
+            return np.zeros((6, self.size))
+        rigid = not isinstance(self.system.components[port.component], GearTrain)
+        key = "cg" if rigid and at is None else self.keys[port, at]
+        return self.embed(port.component, self.structures[port.component].ports[key])
+
+
+def shaft_point(train: GearTrain, port: Port) -> ShaftPoint:
+    """The point on the shaft that a port names by station or by disk."""
+    assert port.shaft is not None
+    z = train.shafts[port.shaft].disk(port.disk).z if port.disk is not None else port.z
+    assert z is not None
+    return ShaftPoint(port.shaft, z)
+
+
+def joint_place(system: System, joint: Joint) -> Vector | None:
+    """Where a joint is: its `at`, else the position of the shaft station at one of its ends."""
+    if joint.at is not None:
+        return joint.at
+    for port in joint.between:
+        component = None if port.is_ground else system.components[port.component]
+        if isinstance(component, GearTrain):
+            point = shaft_point(component, port)
+            return component.shafts[point.shaft].position(point.z)
+    return None
