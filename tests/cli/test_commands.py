@@ -31,7 +31,7 @@ def test_sweep_prints_bands_and_checks(run):
     assert code == 0
     assert "moment paths" in out
     assert "bearing_4.rx" in out
-    assert out.count("passed") == 5
+    assert out.count("passed") == 8
 
 
 def test_sweep_for_machines_equals_the_power_flow(run):

@@ -3,32 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from html import escape
 from typing import Any
 
 import numpy as np
 
 from ..fmu.checks import Comparison, ValidationReport
+from ..network.modal import ModalNetwork
 from ..numerics.arrays import Complex, Real
 from .layout import COLOURS, INK, SYMBOLS, Figure, Trace, axis, line, page, rounded
-from .wording import number, spaced
+from .transfers import Transfers
+from .wording import number, plural, spaced
 
 
 def fmu_label(report: ValidationReport) -> str:
-    """File name and kind of an FMU."""
-    return f"{report.fmu.name} ({report.kind})"
+    """File name and kind of an FMU, as a label in a figure."""
+    return escape(f"{report.fmu.name} ({report.kind})", quote=False)  # plotly reads simple HTML in its labels
 
 
-def bode_figures(validations: Sequence[ValidationReport]) -> list[Figure]:
-    """One figure for each compared transfer, all FMUs in it."""
-    curves: dict[tuple[str, str], list[tuple[str, Comparison]]] = {}
-    for report in validations:
-        for item in report.comparisons:
-            curves.setdefault((item.name, item.unit), []).append((fmu_label(report), item))
-    return [_bode(k, *key, found) for k, (key, found) in enumerate(curves.items())]
+def bode_figures(validations: Sequence[ValidationReport], network: ModalNetwork) -> list[Figure]:
+    """One figure for each compared transfer, all FMUs in it; the solver's curve between the points from the network."""
+    every = [(fmu_label(report), item) for report in validations for item in report.comparisons if len(item.frequency)]
+    transfers = Transfers(network, [item for _, item in every])
+    curves: dict[tuple[str, str, str | None], list[tuple[str, Comparison]]] = {}
+    for label, item in every:
+        curves.setdefault((item.name, item.unit, transfers.load(item)), []).append((label, item))
+    return [_bode(k, *key, found, transfers) for k, (key, found) in enumerate(curves.items())]
 
 
 def deviation(item: Comparison) -> float:
-    """Largest distance of the simulated points from the solver, relative to the largest simulated-over value."""
+    """Largest distance of the simulated points from the solver, relative to the solver's largest value there."""
     at = solver_at(item)
     scale = abs(at).max() if len(at) else 0.0
     return float(abs(item.simulated - at).max() / scale) if scale else float("nan")
@@ -44,13 +48,16 @@ def solver_at(item: Comparison) -> Complex:
     return np.asarray(real + 1j * imaginary)
 
 
-def _bode(k: int, name: str, unit: str, found: list[tuple[str, Comparison]]) -> Figure:
+def _bode(
+    k: int, name: str, unit: str, load: str | None, found: list[tuple[str, Comparison]], transfers: Transfers
+) -> Figure:
     first = found[0][1]
-    f = first.solver_frequency
-    data = [line(f, _decibels(first.solver), "solver", INK, width=1.6)]
-    x, y = _broken(f, np.degrees(np.angle(first.solver)))
+    f, solver = first.solver_frequency, first.solver
+    if load is not None:
+        f, solver = transfers.frequency, transfers.curve(name, load)
+    data = [line(f, _decibels(solver), "solver", INK, width=1.6, legendgroup="solver")]
+    x, y = _broken(f, np.degrees(np.angle(solver)))
     data.append(line(x, y, "solver", INK, width=1.6, yaxis="y2", showlegend=False, legendgroup="solver"))
-    data[0]["legendgroup"] = "solver"
     for i, (label, item) in enumerate(found):
         data += _points(item, label, COLOURS[i % len(COLOURS)], SYMBOLS[i % len(SYMBOLS)])
     every = np.concatenate([f, *(item.frequency for _, item in found)])
@@ -63,10 +70,11 @@ def _bode(k: int, name: str, unit: str, found: list[tuple[str, Comparison]]) -> 
     )
     worst = max(deviation(item) for _, item in found)
     caption = (
-        f"{name} per unit of the excitation. Line: solver (mobility synthesis); markers: steady state of the simulated "
-        f"FMU. Largest deviation of a marker, relative to the largest value of the solver there: {number(worst, 2)}."
+        f"{name} per {f'unit of {load}' if load else 'unit of the input'}. Line: solver (mobility synthesis), "
+        f"{'on a fine grid' if load else 'straight between its points'}; markers: steady state of the simulated FMU. "
+        f"Largest deviation of a marker, relative to the largest value of the solver there: {number(worst, 2)}."
     )
-    words = f"Bode plot of {name}: {len(found)} simulated FMUs over the solver's curve."
+    words = f"Bode plot of {name}: {plural(len(found), 'simulated FMU')} over the solver's curve."
     return Figure(f"bode-{k}", caption, words, data, layout)
 
 
@@ -92,7 +100,7 @@ def _points(item: Comparison, label: str, colour: str, symbol: str) -> list[Trac
 def _decibels(values: Complex) -> Real:
     """20 lg |H|; a gap for zero."""
     size = abs(values)
-    return 20.0 * np.log10(np.where(size > 0.0, size, np.nan))
+    return np.asarray(20.0 * np.log10(np.where(size > 0.0, size, np.nan)))
 
 
 def _broken(f: Real, phase: Real) -> tuple[Real, Real]:

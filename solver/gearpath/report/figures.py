@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..numerics.arrays import Real
 from .layout import (
     COLOURS,
     DASHES,
@@ -25,12 +26,12 @@ from .layout import (
     stacked,
     suffix,
 )
-from .ranking import bands, share, total
+from .ranking import bands, receiver_names, share, total
 from .results import Results
 from .wording import decibel, level, listed, number, percent
 
 _PATTERN = {"fillmode": "overlay", "fgcolor": "#ffffff", "fgopacity": 0.8, "solidity": 0.22, "size": 7}
-PANEL = 250  # px, height of one panel
+PANEL, GAP = 250, 42  # px, height of one panel and what of it lies between two
 
 
 def ratio_figure(results: Results) -> Figure:
@@ -55,7 +56,7 @@ def ratio_figure(results: Results) -> Figure:
 def path_figure(results: Results) -> Figure:
     """The power ratio of every path: one panel a degree of freedom, one colour a bearing."""
     dofs = list(dict.fromkeys(path.rsplit(".", 1)[1] for path in results.paths))
-    domains = stacked(len(dofs), gap=0.3 / max(len(dofs), 1))
+    domains = stacked(len(dofs), gap=GAP / (PANEL * len(dofs)))
     data: list[Trace] = []
     layout = page(PANEL * len(dofs) + 90, annotations=[])
     layout["legend"] = {**LEGEND, "y": 1.0 + 24.0 / (PANEL * len(dofs))}  # above the heading of the first panel
@@ -67,9 +68,7 @@ def path_figure(results: Results) -> Figure:
             if f"{bearing}.{dof}" in results.paths:
                 ratio = results.path_alpha[results.paths.index(f"{bearing}.{dof}")]
                 style = COLOURS[b % len(COLOURS)], DASHES[b % len(DASHES)]
-                data += signed(
-                    results.frequency, ratio, bearing, *style, yaxis=f"y{suffix(k)}", legendgroup=bearing
-                )
+                data += signed(results.frequency, ratio, bearing, *style, yaxis=f"y{suffix(k)}", legendgroup=bearing)
     layout["xaxis"] = frequency_axis(results.frequency, anchor=f"y{suffix(len(dofs) - 1)}")
     layout["hovermode"] = "closest"
     _one_entry_each(data, results.bearings)
@@ -82,11 +81,12 @@ def path_figure(results: Results) -> Figure:
 
 
 def ranking_figure(results: Results) -> Figure:
-    """Share of every bearing in the transmitted power, by band."""
+    """Share of every bearing in the power that enters the receivers, by band."""
     found = bands(results.frequency)
+    receivers = receiver_names(results)
     data: list[Trace] = []
     for b, bearing in enumerate(results.bearings):
-        shares = [100.0 * share(results, band, bearing, results.of_bearing(bearing)).exchange for band in found]
+        shares = [100.0 * share(results, band, bearing, results.of_bearing(bearing)).share for band in found]
         data.append(
             {
                 "type": "bar",
@@ -105,11 +105,12 @@ def ranking_figure(results: Results) -> Figure:
         barmode="group",
         bargap=0.25,
         xaxis=axis("band", type="category", showgrid=False),
-        yaxis=axis("share of the exchanged power, %", zeroline=True, zerolinecolor=INK),
+        yaxis=axis("share of the entering power, %", zeroline=True, zerolinecolor=INK),
     )
     caption = (
-        "Net power through every bearing, summed over the lines of each band, relative to the sum of the bearings' "
-        "absolute powers: a bearing that returns power to the source has a negative share."
+        "Net power through every bearing, summed over the lines of each band, relative to the power that enters "
+        f"{receivers} in that band: the bars above zero add up to 100 %; a bar below zero is the part of it that the "
+        "bearing returns to the source."
     )
     words = f"Bars: shares of {listed(list(results.bearings))} in {len(found)} bands; the table below has the numbers."
     return Figure("ranking", caption, words, data, layout)
@@ -201,8 +202,8 @@ def _ratio_words(results: Results) -> str:
         if results.paths and total(results, band).ratio > 0.0
     ]
     return (
-        f"Power ratio over frequency; largest {percent(results.alpha[peak])} at {number(results.frequency[peak], 4)} Hz."
-        + (f" Ratio of band powers: {listed(whole)}." if whole else "")
+        f"Power ratio over frequency; largest {percent(results.alpha[peak])} at "
+        f"{number(results.frequency[peak], 4)} Hz." + (f" Ratio of band powers: {listed(whole)}." if whole else "")
     )
 
 
@@ -218,15 +219,15 @@ def _one_entry_each(data: list[Trace], names: Sequence[str]) -> None:
             trace["showlegend"] = True
             seen.add(trace["legendgroup"])
     if any(trace["line"]["dash"] == RETURNED for trace in data):
-        data.append(line([], [], "returned to the source", INK, RETURNED))
+        data.append(line([np.nan], [np.nan], "returned to the source", INK, RETURNED))
 
 
-def _positive(values: np.ndarray[Any, np.dtype[np.float64]]) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _positive(values: Real) -> Real:
     """For a logarithmic axis: a gap where there is nothing to draw."""
     return np.where(values > 0.0, values, np.nan)
 
 
-def _decades(*powers: np.ndarray[Any, np.dtype[np.float64]]) -> float:
+def _decades(*powers: Real) -> float:
     values = np.concatenate([power[power > 0.0] for power in powers])
     return float(np.log10(values.max() / values.min())) if len(values) else 1.0
 

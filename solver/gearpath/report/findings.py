@@ -9,59 +9,34 @@ import numpy as np
 
 from ..fmu.checks import ValidationReport
 from .model_tables import excitation_words
-from .ranking import bands, ranking, total, whole_band
+from .ranking import Share, bands, leaders, over, ranking, receiver_names, supplied, total, whole_band
 from .results import Results
 from .wording import decibel, given, level, listed, number, percent, plural
 
 EVEN = 0.01  # shares of the bearings that differ by less than this count as equal
+LISTED = 6  # bearings named at most in one sentence
+MOST = 0.5  # a band with more than this part of the input power decides what a sum over all bands says
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One finding: what it is about, and what came out."""
+
+    label: str
+    text: str
 
 
 @dataclass(frozen=True)
 class KeyFigure:
-    """One figure for the strip below the title."""
+    """One figure for the strip below the findings."""
 
     label: str
     value: str
     detail: str
 
 
-def summary(results: Results, validations: Sequence[ValidationReport]) -> str:
-    """What was computed and what came out: one paragraph."""
-    sentences = [_what(results)]
-    if results.paths and results.input_power.any():
-        sentences += [_how_much(results), _by_band(results), _which_bearing(results), _moments(results)]
-    else:
-        sentences.append("No power passes through bearings: the model has no joint of kind bearing, or is at rest.")
-    sentences.append(
-        f"Input power and the sum of all dissipated powers agree within {number(results.residual.max(), 2)} "
-        "of the input power on every line."
-    )
-    if validations:
-        sentences.append(_checked(validations))
-    return " ".join(sentences)
-
-
-def key_figures(results: Results, validations: Sequence[ValidationReport]) -> list[KeyFigure]:
-    """The same findings as a strip of figures."""
-    band = whole_band(results.frequency)
-    sums, order = total(results, band), ranking(results, band)
-    figures = []
-    if order and np.isfinite(sums.share):
-        figures = [
-            KeyFigure("transmitted / input power", decibel(level(sums.ratio)), f"{percent(sums.ratio)}, {band.label}"),
-            KeyFigure("bearing that passes most", order[0].name, f"{percent(order[0].share)} of the net power through all"),
-            KeyFigure("moment paths", percent(sums.moment / sums.ratio), "of the transmitted power"),
-        ]
-    residual = number(results.residual.max(), 2)
-    figures.append(KeyFigure("power balance", residual, "largest relative residual"))
-    if validations:
-        passed = sum(report.passed for report in validations)
-        verdict = "all checks passed" if passed == len(validations) else "CHECKS FAILED, see below"
-        figures.append(KeyFigure("FMUs validated", f"{passed} of {len(validations)}", verdict))
-    return figures
-
-
-def _what(results: Results) -> str:
+def computed(results: Results) -> str:
+    """What was computed, in one sentence."""
     f = results.frequency
     system = results.system
     return (
@@ -72,59 +47,175 @@ def _what(results: Results) -> str:
     )
 
 
+def findings(results: Results, validations: Sequence[ValidationReport]) -> list[Finding]:
+    """What came out, one paragraph for each question."""
+    found = []
+    if not results.paths:
+        found.append(Finding("Paths", "The model has no joint of kind bearing, so that no power passes through paths."))
+    elif not results.input_power.any():
+        found.append(Finding("Paths", "The excitation puts no power in, so that none passes through the bearings."))
+    else:
+        found = [
+            Finding("Power ratio", _how_much(results)),
+            Finding("Bearings", _which_bearings(results)),
+            Finding("Moments", _moments(results)),
+        ]
+    balance = (
+        f"Input power and the sum of all dissipated powers agree within {number(results.residual.max(), 2)} "
+        "of the input power on every line."
+    )
+    found.append(Finding("Balance", balance))
+    if validations:
+        found.append(Finding("FMUs", _checked(validations)))
+    return found
+
+
+def key_figures(results: Results, validations: Sequence[ValidationReport]) -> list[KeyFigure]:
+    """The same findings as a strip of figures."""
+    band = whole_band(results.frequency)
+    sums, order = total(results, band), ranking(results, band)
+    figures = []
+    if order and np.isfinite(sums.ratio):
+        detail = f"{percent(sums.ratio)} in powers summed over {band.label}; mean level {decibel(sums.mean_level)}"
+        figures.append(KeyFigure("transmitted / input power", decibel(level(sums.ratio)), detail))
+        if first := leaders(order):
+            each = " each" if len(first) > 1 else ""
+            detail = f"{percent(first[0].share)}{each} of the power that enters {receiver_names(results)}"
+            figures.append(KeyFigure("bearing that passes most", listed([item.name for item in first]), detail))
+        moment = percent(over(sums.moment, sums.ratio)) if results.moment.any() else "none"
+        figures.append(KeyFigure("moment paths", moment, "of the net transmitted power"))
+    residual = number(results.residual.max(), 2)
+    figures.append(KeyFigure("power balance", residual, "largest relative residual"))
+    if validations:
+        passed = sum(report.passed for report in validations)
+        verdict = "all checks passed" if passed == len(validations) else "CHECKS FAILED, see below"
+        figures.append(KeyFigure("FMUs validated", f"{passed} of {len(validations)}", verdict))
+    return figures
+
+
 def _how_much(results: Results) -> str:
-    sums = total(results, whole_band(results.frequency))
+    band = whole_band(results.frequency)
+    sums, parts = total(results, band), bands(results.frequency)
+    through = "the bearing" if len(results.bearings) == 1 else f"the {len(results.bearings)} bearings"
+    text = (
+        f"Summed over {band.label}, {percent(sums.ratio)} of the input power leaves the source through {through} "
+        f"({decibel(level(sums.ratio))})."
+    )
+    heaviest = max(parts, key=lambda part: supplied(results, part))
+    if len(parts) > 1 and supplied(results, heaviest) > MOST:
+        text += (
+            f" Such a sum weighs every line by its input power, of which {percent(supplied(results, heaviest))} "
+            f"enters in {heaviest.label}: it describes mainly that band."
+        )
+    means = [f"{decibel(total(results, part).mean_level)} in {part.label}" for part in parts]
+    text += f" With equal weight for every line, the mean level of the power ratio is {listed(means)}."
     peak = int(np.argmax(results.alpha))
     return (
-        f"Summed over the band, {percent(sums.ratio)} of the input power leaves through the "
-        f"{plural(len(results.bearings), 'bearing')} ({decibel(level(sums.ratio))}); the power ratio is largest at "
-        f"{number(results.frequency[peak], 4)} Hz, where it reaches {percent(results.alpha[peak])}."
+        f"{text} The ratio is largest at {number(results.frequency[peak], 4)} Hz, where "
+        f"{percent(results.alpha[peak])} of the input power is transmitted."
     )
 
 
-def _by_band(results: Results) -> str:
-    means = [
-        f"{decibel(total(results, band).mean_level)} ({band.label})" for band in bands(results.frequency)
-    ]
-    return f"The mean level of the power ratio is {listed(means)}."
-
-
-def _which_bearing(results: Results) -> str:
-    order = ranking(results, whole_band(results.frequency))
+def _which_bearings(results: Results) -> str:
+    band = whole_band(results.frequency)
+    order = ranking(results, band)
     if len(order) == 1:
         return f"All of it passes through {order[0].name}."
-    first, last = order[0], order[-1]
-    back = [f"{item.name} ({percent(item.share)})" for item in order if item.ratio < 0.0]
+    entering = [item for item in order if item.ratio > 0.0]
+    back = [item for item in reversed(order) if item.ratio < 0.0]
+    receivers = receiver_names(results)
+    if not entering:
+        return f"Summed over {band.label}, no bearing passes power into {receivers}."
+    even = entering[0].share - entering[-1].share < EVEN and len(entering) == len(order)
+    text = (
+        f"Summed over {band.label}, the power that enters {receivers} comes "
+        f"{'almost equally ' if even else ''}through {_named(entering)}."
+    )
     if back:
-        verb = "returns" if len(back) == 1 else "return"
-        return (
-            f"Most power passes through {first.name}: {percent(first.share)} of the net transmitted power, while "
-            f"{listed(back)} {verb} power to the source."
+        returned = -sum(item.share for item in back)
+        text += (
+            f" Of this power, {percent(returned)} flows back into the source through {_named(back)}; the remaining "
+            f"{percent(total(results, band).share)} is the net transmitted power."
         )
-    span = f"{percent(first.share)}; {last.name} passes least, {percent(last.share)}"
-    if first.share - last.share < EVEN:
-        return f"The bearings share the power almost equally: {first.name} passes most, {span}."
-    return f"Most of the transmitted power passes through {first.name}, {span}."
+    return text + _leaders(results)
+
+
+def _leaders(results: Results) -> str:
+    """Who passes most, band by band."""
+    where: dict[str, list[str]] = {}
+    for part in bands(results.frequency):
+        first = [item.name for item in leaders(ranking(results, part))]
+        if first:
+            where.setdefault(f"{listed(first)}{' alike' if len(first) > 1 else ''}", []).append(part.label)
+    if len(where) > 1:
+        return f" Band by band, most passes {'; '.join(f'through {k} in {listed(v)}' for k, v in where.items())}."
+    if sum(len(labels) for labels in where.values()) > 1:
+        return f" In every band most passes through {next(iter(where))}."
+    return ""
+
+
+def _named(items: Sequence[Share]) -> str:
+    """Bearings with their shares; the smallest of many together."""
+    words = [f"{item.name} ({percent(abs(item.share))})" for item in items]
+    if len(words) > LISTED:
+        rest = items[LISTED - 1 :]
+        words[LISTED - 1 :] = [f"{len(rest)} more ({percent(sum(abs(item.share) for item in rest))})"]
+    return listed(words)
 
 
 def _moments(results: Results) -> str:
-    sums = total(results, whole_band(results.frequency))
     if not results.moment.any():
         return "The bearings have no moment paths."
     if not results.alpha_moment.any():
-        return "The moment paths carry no power (nothing above rounding)."
+        return "The moment paths carry no net power (nothing above rounding)."
+    band = whole_band(results.frequency)
+    sums = total(results, band)
     back = float(np.mean(results.alpha_moment < 0.0))
-    returned = f", and return power to the source on {percent(back)} of the lines" if back else ""
-    single = float(np.mean((results.path_alpha < 0.0).any(axis=0)))
+    force, moment = percent(over(sums.force, sums.ratio)), percent(abs(over(sums.moment, sums.ratio)))
+    often = f"on {percent(back)} of the lines" if back < 1.0 else "on every line"
+    if sums.moment < 0.0:
+        text = (
+            f"Summed over {band.label}, the moment paths together return power to the source, {moment} of the net "
+            f"transmitted power (they do so {often}); the force paths carry {force} of it."
+        )
+    else:
+        also = f" (on balance; they return power {often})" if back else ""
+        text = (
+            f"Summed over {band.label}, the moment paths together carry {moment} of the net transmitted power{also}, "
+            f"the force paths {force}."
+        )
+    return text + _heaviest_moment(results) + _single_paths(results)
+
+
+def _heaviest_moment(results: Results) -> str:
+    """Where moments matter most beside forces."""
+    force, moment = abs(results.alpha_force), abs(results.alpha_moment)
+    weight = np.divide(moment, force + moment, out=np.zeros_like(moment), where=moment > 0.0)
+    at = int(np.argmax(weight))
+    minus = " (minus: back into the source)" if min(results.alpha_moment[at], results.alpha_force[at]) < 0.0 else ""
     return (
-        f"Moment paths carry {percent(sums.moment / sums.ratio)} of the transmitted power{returned}; at least one "
-        f"single path returns power on {percent(single)} of the lines."
+        f" Moment paths weigh most at {number(results.frequency[at], 4)} Hz, where they pass "
+        f"{percent(results.alpha_moment[at])} of the input power and the force paths "
+        f"{percent(results.alpha_force[at])}{minus}."
+    )
+
+
+def _single_paths(results: Results) -> str:
+    single = float(np.mean((results.path_alpha < 0.0).any(axis=0)))
+    if not single:
+        return " No single path returns power to the source."
+    where = "every line" if single == 1.0 else f"{percent(single)} of the lines"
+    return (
+        f" At least one of the {plural(len(results.paths), 'path')} returns power on {where}, so that levels of "
+        "single paths cannot be added without their directions."
     )
 
 
 def _checked(validations: Sequence[ValidationReport]) -> str:
     checks = [check for report in validations for check in report.checks]
-    failed = sum(not check.passed for check in checks)
+    failed = [
+        f"“{check.name}” of {report.fmu.name}" for report in validations for check in report.checks if not check.passed
+    ]
     names = listed([report.fmu.name for report in validations])
-    verdict = "all of them passed" if not failed else f"{failed} of them FAILED"
+    verdict = f"{len(failed)} FAILED: {listed(failed)}" if failed else "all of them passed"
     return f"{plural(len(validations), 'FMU')} ({names}) went through {plural(len(checks), 'check')}; {verdict}."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,7 +17,7 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#a3527e", "#8a6a00", "#3f97c9", "#5
 DASHES = ("solid", "dash", "longdashdot", "longdash", "dashdot", "solid", "dash", "longdash")
 SYMBOLS = ("circle-open", "x-thin-open", "square-open", "diamond-open", "triangle-up-open", "cross-thin-open")
 SHAPES = ("", "/", ".", "x", "\\", "-", "+", "|")
-LEGEND = {"orientation": "h", "x": 0, "xanchor": "left", "yanchor": "bottom", "traceorder": "normal"}
+LEGEND = {"orientation": "h", "x": 0, "xanchor": "left", "yanchor": "bottom", "traceorder": "normal", "itemwidth": 42}
 RETURNED = "dot"  # the dash of power that flows back into the source
 
 
@@ -37,12 +37,14 @@ class Figure:
         return int(self.layout["height"])
 
 
-def rounded(values: Iterable[float], digits: int = 6) -> list[float | None]:
+def rounded(values: Iterable[float] | Real, digits: int = 6) -> list[float | None]:
     """Values to so many significant digits; None (a gap) for what is not finite."""
     return [float(f"{v:.{digits}g}") if np.isfinite(v) else None for v in np.asarray(values, float)]
 
 
-def line(x: Sequence[float], y: Sequence[float], name: str, colour: str, dash: str = "solid", **more: Any) -> Trace:
+def line(
+    x: Iterable[float] | Real, y: Iterable[float] | Real, name: str, colour: str, dash: str = "solid", **more: Any
+) -> Trace:
     """A line without markers; x to nine digits, y to six."""
     style = {"color": colour, "dash": dash, "width": more.pop("width", 1.8)}
     return {

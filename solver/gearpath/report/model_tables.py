@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 
-from markupsafe import Markup
-
 from ..components import GearTrain
 from ..components.dofs import is_rotation
 from ..joints import Joint, Port
 from ..joints.joint import Matrix
 from ..network.ports import joint_place
 from ..network.system import MeshExcitation, System
-from .table import Table, table
+from .table import Cell, MatrixCell, Table, table
 from .wording import given, listed, quantity
 
 
@@ -42,9 +40,7 @@ def shaft_table(system: System) -> Table:
     rows = []
     for train, part in _trains(system):
         for name, shaft in part.shafts.items():
-            bores = [
-                f"{given(s.outer)}" + (f" / {given(s.inner)}" if s.inner else "") for s in shaft.sections
-            ]
+            bores = [f"{given(s.outer)}" + (f" / {given(s.inner)}" if s.inner else "") for s in shaft.sections]
             rows.append(
                 [
                     f"{train}.{name}",
@@ -79,8 +75,12 @@ def disk_table(system: System) -> Table:
 def mesh_table(system: System) -> Table:
     """Gear meshes."""
     rows = [
-        [f"{train}.{name}", " – ".join(".".join(gear) for gear in mesh.between), given(mesh.stiffness)]
-        + [" / ".join(given(r) for r in mesh.base_radii)]
+        [
+            f"{train}.{name}",
+            " – ".join(".".join(gear) for gear in mesh.between),
+            given(mesh.stiffness),
+            " / ".join(given(r) for r in mesh.base_radii),
+        ]
         for train, part in _trains(system)
         for name, mesh in part.meshes.items()
     ]
@@ -92,7 +92,7 @@ def matrix_table(system: System) -> Table:
     alike: dict[tuple[object, ...], list[str]] = {}
     for name, joint in system.joints.items():
         alike.setdefault((joint.kind, joint.dofs, joint.stiffness, joint.damping), []).append(name)
-    rows = []
+    rows: list[list[Cell]] = []
     for names in alike.values():
         joint = system.joints[names[0]]
         rows.append(
@@ -145,16 +145,12 @@ def matrix_unit(row: str, column: str, damping: bool) -> str:
     return f"{force} s/{motion}" if damping else f"{force}/{motion}"
 
 
-def _matrix(joint: Joint, matrix: Matrix, damping: bool) -> Markup:
-    head = Markup("").join(Markup('<th scope="col">{}</th>').format(dof) for dof in joint.dofs)
-    body = Markup("")
-    for row, values in zip(joint.dofs, matrix):
-        cells = Markup("").join(
-            Markup('<td>{} <span class="unit">{}</span></td>').format(given(v), matrix_unit(row, column, damping))
-            for column, v in zip(joint.dofs, values)
-        )
-        body += Markup('<tr><th scope="row">{}</th>{}</tr>').format(row, cells)
-    return Markup('<table class="matrix"><tr><td></td>{}</tr>{}</table>').format(head, body)
+def _matrix(joint: Joint, matrix: Matrix, damping: bool) -> MatrixCell:
+    rows = [
+        [(given(value), matrix_unit(row, column, damping)) for column, value in zip(joint.dofs, values)]
+        for row, values in zip(joint.dofs, matrix)
+    ]
+    return MatrixCell(joint.dofs, rows)
 
 
 def _trains(system: System) -> Iterator[tuple[str, GearTrain]]:

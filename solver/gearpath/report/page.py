@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
 from ..errors import InputError, MissingExtraError
+from ..files import write_text
 from ..fmu.checks import ValidationReport
 from . import figures, findings, tables
 from .bode import bode_figures
 from .layout import Figure
-from .model_tables import model_tables
+from .model_tables import excitation_words, model_tables
 from .results import Results, compute
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def write_report(
     path: str | Path,
     *,
     validations: Sequence[ValidationReport] = (),
-    progress: Callable[[str], None] = lambda message: None,
+    progress: Callable[[str], None] = lambda _: None,
 ) -> Path:
     """Write the report of a model, with the validations of its FMUs, as one HTML file; return its path.
 
@@ -41,28 +41,15 @@ def write_report(
     _writable(target)
     results = compute(model, progress)
     progress("report: page")
-    html = environment.get_template("template.html.j2").render(
+    html: str = environment.get_template("template.html.j2").render(
         **_content(model, results, validations),
         plotly_js=plotly_js,
         style=(_HERE / "style.css").read_text(encoding="utf-8"),
         script=(_HERE / "plots.js").read_text(encoding="utf-8"),
     )
-    replace_file(target, html)
+    write_text(target, html)
     progress(f"report: {target}")
     return target
-
-
-def replace_file(target: Path, text: str) -> None:
-    """Write beside the target and move; nothing is left behind where that fails."""
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
-        try:
-            temporary.write_text(text, encoding="utf-8", newline="\n")
-            temporary.replace(target)
-        finally:
-            temporary.unlink(missing_ok=True)
-    except OSError as error:
-        raise _unwritable(target, error.strerror or str(error)) from error
 
 
 def figure_data(drawn: Sequence[Figure]) -> str:
@@ -84,16 +71,17 @@ def _content(model: Model, results: Results, validations: Sequence[ValidationRep
     carried = [figures.ratio_figure(results)] if results.paths else []
     paths = [figures.path_figure(results), figures.ranking_figure(results)] if results.paths else []
     balance = [figures.balance_figure(results), figures.shares_figure(results)]
-    bode = bode_figures(validations)
+    bode = bode_figures(validations, results.network)
     return {
         "title": model.name,
         "version": __version__,
-        "summary": findings.summary(results, validations),
+        "computed": findings.computed(results),
+        "findings": findings.findings(results, validations),
         "key_figures": findings.key_figures(results, validations),
         "results": results,
         "tables": tables,
         "model_tables": model_tables(model.system),
-        "excitation": findings.excitation_words(model.system),
+        "excitation": excitation_words(model.system),
         "figures": {figure.key: figure for figure in carried + paths + balance},
         "bode": bode,
         "validations": validations,
@@ -123,10 +111,7 @@ def _libraries() -> tuple[str, Any]:
 def _writable(target: Path) -> None:
     """Refuse before the work what cannot be written after it."""
     if target.is_dir():
-        raise _unwritable(target, "it is a directory")
-    if not target.parent.is_dir():
-        raise _unwritable(target, f"there is no directory {target.parent}")
-
-
-def _unwritable(target: Path, reason: str) -> InputError:
-    return InputError(f"{target}: cannot be written ({reason}); give a file name in a directory that you may write to")
+        raise InputError(f"{target}: cannot be written (it is a directory); give a file name")
+    parent = next(folder for folder in target.absolute().parents if folder.exists())
+    if not parent.is_dir():
+        raise InputError(f"{target}: cannot be written ({parent} is not a directory); choose another place")

@@ -10,15 +10,16 @@
     var figure = book.figures[box.id];
     if (!figure || box.dataset.drawn) { return; }
     figure.data.forEach(function (trace) { trace.x = book.grids[trace.x]; });
+    var narrow = box.clientWidth < 560; // no room for buttons beside the curves
     if (touch) { figure.layout.dragmode = false; } // a finger scrolls the page
-    if (box.clientWidth < 560) {
+    if (narrow) {
       figure.layout.font.size = 10;
       figure.layout.margin.l = 44;
       figure.layout.margin.r = 16;
     }
     box.dataset.drawn = "yes";
     box.textContent = "";
-    Plotly.newPlot(box, figure.data, figure.layout, config);
+    Plotly.newPlot(box, figure.data, figure.layout, narrow ? Object.assign({}, config, { displayModeBar: false }) : config);
     drawn.push(box);
   }
 

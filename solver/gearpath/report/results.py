@@ -36,7 +36,7 @@ class Results:
     paths: tuple[str, ...]  # "bearing_1.uy"
     elements: tuple[str, ...]
     input_power: Real  # (F,), W
-    path_power: Real  # (p, F), W, positive into the receiver
+    path_power: Real  # (p, F), W, positive into the receiver, rounding noise set to zero
     dissipated_power: Real  # (e, F), W
     alpha: Real  # (F,), ratios to the input power, rounding noise set to zero in the parts
     alpha_force: Real
@@ -92,7 +92,7 @@ def compute(model: Model, progress: Callable[[str], None] = lambda _: None) -> R
         paths=tuple(str(path) for path in flow["path"].values),
         elements=tuple(str(element) for element in flow["element"].values),
         input_power=flow["input_power"].values,
-        path_power=flow["path_alpha"].values * flow["input_power"].values,
+        path_power=path_alpha * flow["input_power"].values,
         dissipated_power=flow["dissipated_power"].values,
         alpha=flow["alpha"].values,
         alpha_force=force,
@@ -100,9 +100,7 @@ def compute(model: Model, progress: Callable[[str], None] = lambda _: None) -> R
         path_alpha=path_alpha,
         natural=natural,
         natural_alpha=at_natural,
-        free={
-            name: np.sqrt(network.eigenvalues[block]) / (2.0 * np.pi) for name, block in network.components.items()
-        },
+        free={name: np.sqrt(network.eigenvalues[block]) / (2.0 * np.pi) for name, block in network.components.items()},
     )
 
 
@@ -116,7 +114,7 @@ def parts(flow: xr.Dataset) -> tuple[Real, Real, Real]:
     moment = np.array([is_moment_path(str(path)) for path in flow["path"].values], bool)
 
     def clean(part: Real) -> Real:
-        return np.where(abs(part) < threshold, 0.0, part)
+        return np.asarray(np.where(abs(part) < threshold, 0.0, part))
 
     force, tilt = (clean(paths[chosen].sum(axis=0)) for chosen in (~moment, moment))
     return clean(paths), force, tilt
@@ -128,8 +126,8 @@ def _amplitude(system: System) -> float:
 
 
 def _within(natural: Real, frequency: Real) -> Real:
-    return natural[(natural > 0.0) & (natural >= frequency.min()) & (natural <= frequency.max())]
+    return np.asarray(natural[(natural > 0.0) & (natural >= frequency.min()) & (natural <= frequency.max())])
 
 
 def _ratio(part: Real, whole: Real) -> Real:
-    return np.divide(part, whole, out=np.zeros_like(part), where=whole != 0.0)
+    return np.asarray(np.divide(part, whole, out=np.zeros_like(part), where=whole != 0.0))

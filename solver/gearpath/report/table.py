@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-Cell = str  # plain text, or markupsafe.Markup for a nested matrix
+
+@dataclass(frozen=True)
+class MatrixCell:
+    """A matrix within a cell: its rows and columns have the names in `head`, every entry is a number and its unit."""
+
+    head: Sequence[str]
+    rows: Sequence[Sequence[tuple[str, str]]]
+
+
+Cell = str | MatrixCell
 
 
 @dataclass(frozen=True)

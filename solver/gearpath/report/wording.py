@@ -34,11 +34,11 @@ def given(value: float) -> str:
 
 
 def percent(share: float, digits: int = 3) -> str:
-    """A share as a percentage: three significant digits below 1 %, one decimal above, none far above 100 %."""
+    """A share as a percentage: three significant digits below 1 %, one decimal above, none above 1000 %."""
     if not math.isfinite(share):
         return "–"
     value = 100.0 * float(share)
-    decimals = 1 if abs(value) < 100.05 else 0
+    decimals = 1 if abs(value) < 999.95 else 0
     text = _signed(f"{value:.{decimals}f}") if abs(value) >= 1.0 else number(value, digits)
     return f"{text}{_NBSP}%"
 
@@ -67,7 +67,7 @@ def spaced(unit: str) -> str:
 
 def plural(count: int, noun: str) -> str:
     """`1 bearing`, `4 bearings`."""
-    ending = "" if count == 1 else ("es" if noun.endswith(("s", "h")) else "s")
+    ending = "" if count == 1 else ("es" if noun.endswith(("s", "sh", "ch")) else "s")
     return f"{number(count, 6) if count > 9999 else count}{_NBSP}{noun}{ending}"
 
 
