@@ -40,7 +40,7 @@ def main() -> None:
             deviation = np.max(abs(found - expected).max(axis=0) / abs(expected).max(axis=0))
             each = 1e6 * spent / STEPS
             print(
-                f"step {1e6 * step:4.0f} us: {deviation:.1e} of each output's largest value; {each:.0f} us a step (fmpy)"
+                f"step {1e6 * step:4.0f} us: {deviation:.1e} of the largest value; {each:.0f} us a step (fmpy)"
             )
 
 

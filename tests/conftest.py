@@ -1,7 +1,13 @@
-import pytest
-from systems import default_gearbox
+import os
 
-from gearpath.network.assemble import assemble
+# many small solves are several times slower with BLAS threads, more so with two test processes on two cores
+for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+
+import pytest  # noqa: E402
+from systems import default_gearbox  # noqa: E402
+
+from gearpath.network.assemble import assemble  # noqa: E402
 
 
 def pytest_collection_modifyitems(items):

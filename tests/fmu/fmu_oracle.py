@@ -81,10 +81,9 @@ def frequency_response(network, hertz):
     q = u + d
     g = Z @ (P @ q)
     v, u_rate = 1j * w * q, 1j * w * u
-    amplitude = 1.0 if load.mesh_displacement is None else w**2
-    input_power = 0.5 * np.real(np.conj(load.column @ u_rate) * amplitude)
-    if input_power <= 0:
-        input_power = np.inf
+    # what enters is what is lost, in the components (by u, without the transmission error) and in the joints
+    slip = P @ v
+    input_power = 0.5 * (X @ abs(u_rate) ** 2 + np.real(slip.conj() @ C @ slip))
     result = {"alpha": 0.0, "alpha_force": 0.0, "alpha_moment": 0.0}
     for joint in network.joints:
         if joint.name not in network.paths:

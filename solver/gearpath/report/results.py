@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ..modelfile import Model
 
 NOISE = 1e-13  # parts below this fraction of the sum of absolute path powers are rounding, and zero
+NOTHING = 1e-9  # and so are parts that nowhere in the band reach this fraction
 
 
 @dataclass(frozen=True)
@@ -107,14 +108,17 @@ def compute(model: Model, progress: Callable[[str], None] = lambda _: None) -> R
 def parts(flow: xr.Dataset) -> tuple[Real, Real, Real]:
     """Path ratios (p, F), force part and moment part (F,), rounding noise set to zero.
 
-    A part below 1e-13 of the sum of the absolute path ratios is what rounding leaves of a path that carries nothing.
+    A part below 1e-13 of the sum of the absolute path ratios is rounding, and so is one that nowhere in the band
+    reaches 1e-9 of it: what is left of a path that carries nothing, because the machine is symmetric for example.
     """
     paths = np.array(flow["path_alpha"].values)
-    threshold = NOISE * abs(paths).sum(axis=0)
+    whole = abs(paths).sum(axis=0)
     moment = np.array([is_moment_path(str(path)) for path in flow["path"].values], bool)
 
     def clean(part: Real) -> Real:
-        return np.asarray(np.where(abs(part) < threshold, 0.0, part))
+        size = abs(part)
+        carries = (size > NOTHING * whole).any(axis=-1, keepdims=True)
+        return np.asarray(np.where(carries & (size >= NOISE * whole), part, 0.0))
 
     force, tilt = (clean(paths[chosen].sum(axis=0)) for chosen in (~moment, moment))
     return clean(paths), force, tilt

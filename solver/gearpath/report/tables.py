@@ -139,7 +139,13 @@ def free_table(results: Results) -> Table:
 def validation_table(report: ValidationReport) -> Table:
     """Every check with its figure, its limit and whether it passed."""
     rows = [
-        ["✓ passed" if check.passed else "✗ FAILED", check.name, check.what, number(check.figure), number(check.limit)]
+        [
+            "✓\u00a0passed" if check.passed else "✗\u00a0FAILED",
+            check.name,
+            check.what,
+            number(check.figure),
+            number(check.limit),
+        ]
         for check in report.checks
     ]
     head = ["result", "check", "what the figure is", "figure", "limit"]
