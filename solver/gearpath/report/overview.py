@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..modelfile import Model
 
 INK, GREY, FORCE, MOMENT = "#1d2733", "#8a94a0", "#0072b2", "#d55e00"
-_STYLE = {
+_STYLE: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 9.5,
     "svg.fonttype": "path",
@@ -76,7 +76,8 @@ def _schematic(axes: Any, model: Model) -> None:
     span = np.array([(place[2], place[0]) for _, place in places])
     margin = np.array([0.03, 0.035])
     low, high = span.min(axis=0) - margin, span.max(axis=0) + margin
-    _box(axes, low[0], low[1], *(high - low), "none", linewidth=2.2)
+    width, height = high - low
+    _box(axes, low[0], low[1], width, height, "none", linewidth=2.2)
     for kind, (x, _, z) in places:
         if kind == "bearing":
             for side in (-1, 1):
