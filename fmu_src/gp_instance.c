@@ -111,6 +111,21 @@ void gp_instance_reset(GpInstance *p) {
     forget_discrete(p); /* so that a run repeats itself bit for bit, whatever was run before */
 }
 
+/* Keeps q' = s + sum X d_k e_k where X is about to change under the present inputs: a velocity cannot jump with a
+   damping ratio. Before the first step there is nothing to keep: the instance starts at rest with all inputs 0. */
+static void keep_velocity(GpInstance *p) {
+    const GpModel *m = &p->model;
+    const size_t N = m->modes;
+    if (p->steps == 0) return;
+    for (size_t r = 0; r < N; r++) {
+        const double change = p->system.X[r] - gp_modal_damping(m, p->zeta, r);
+        double motion = 0;
+        if (change == 0) continue;
+        for (size_t k = 0; k < m->loads; k++) motion += m->mesh[k * N + r] * p->input[k]; /* d is 0 for forces */
+        p->x[N + r] += change * motion;
+    }
+}
+
 int gp_use_parameters(GpInstance *p) {
     const GpModel *m = &p->model;
     unsigned char used[6];
@@ -140,6 +155,7 @@ int gp_use_parameters(GpInstance *p) {
         failed = -1;
     }
     if (!p->system_ready) {
+        keep_velocity(p);
         gp_system_form(&p->system, m, p->zeta, p->K, p->C);
         forget_discrete(p);
         p->system_ready = 1;

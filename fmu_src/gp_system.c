@@ -14,10 +14,13 @@ static void multiply_joints(const GpModel *m, const double *packed, const double
     }
 }
 
+double gp_modal_damping(const GpModel *m, const double *zeta, size_t r) { /* `scale` is sqrt(L) wherever L is not 0 */
+    return m->group[r] == GP_NONE || m->eigenvalues[r] == 0 ? 0 : 2 * zeta[m->group[r]] * m->scale[r];
+}
+
 void gp_system_form(GpSystem *s, const GpModel *m, const double *zeta, const double *K, const double *C) {
     const size_t N = m->modes;
-    for (size_t r = 0; r < N; r++) /* `scale` is sqrt(L) wherever L is not zero */
-        s->X[r] = m->group[r] == GP_NONE || m->eigenvalues[r] == 0 ? 0 : 2 * zeta[m->group[r]] * m->scale[r];
+    for (size_t r = 0; r < N; r++) s->X[r] = gp_modal_damping(m, zeta, r);
     for (size_t i = 0; i < m->rows * N; i++) s->P[i] = m->source[i] - m->receiver[i];
     multiply_joints(m, K, s->P, s->KP);
     multiply_joints(m, C, s->P, s->CP);

@@ -24,6 +24,9 @@ typedef struct {
     double *g;        /* (rows) joint forces on the receivers */
 } GpMotion;
 
+/* X of mode r for these damping ratios (groups), rad/s. */
+double gp_modal_damping(const GpModel *m, const double *zeta, size_t r);
+
 /* Forms everything that depends on zeta (groups) and on the packed K and C (blocks). */
 void gp_system_form(GpSystem *s, const GpModel *m, const double *zeta, const double *K, const double *C);
 

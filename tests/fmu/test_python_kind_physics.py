@@ -1,5 +1,6 @@
 """What the python FMU computes, against independent references."""
 
+from ctypes import byref, create_string_buffer
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ pytest.importorskip("fmpy")
 pytest.importorskip("pythonfmu")
 
 import fmpy
+from fmpy.fmi2 import fmi2FMUstate
 from python_gearbox import MOUNTS, Host, export, gearbox
 
 from gearpath.components.mobility import modal_damping_matrix
@@ -239,6 +241,47 @@ def test_joint_parameters_and_modal_damping_while_running(path):
     joints["mount_3"] = replace(joints["mount_3"], damping=((300.0,),))
     assert_responses(host, replace(system, joints=joints))
     host.free()
+
+
+@pytest.mark.parametrize("zeta", [0.03, 0.0])
+def test_a_change_of_modal_damping_moves_nothing_at_rest(path, zeta):
+    """At rest under a held transmission error: a velocity does not jump with a damping ratio, nor later.
+
+    The steps of 20 us have a fixed point of their own, 1e-7 off by rounding with any damping ratio.
+    """
+    names = ["mesh.velocity", "bearing_1.force_uy", "bearing_3.force_rx", "casing.velocity_uy"]
+    host = Host(path).start()
+    host.set({"mesh.transmission_error": 1e-6})
+    kick = abs(np.array(host.get(*names)))
+    host.slave.doStep(0.0, 1e-3)
+    kick = np.maximum(kick, abs(np.array(host.get(*names))))
+    host.slave.doStep(1e-3, 30.0)  # exact steps: one is enough to come to rest
+    rest = np.array(host.get(*names))
+    host.set({"gear_train.modal_damping": zeta})
+    assert (abs(np.array(host.get(*names)) - rest) < 1e-9 * kick).all()
+    for k in range(50):
+        assert (abs(np.array(host.get(*names)) - rest) < 1e-5 * kick).all(), k
+        host.slave.doStep(30.001 + k * 2e-5, 2e-5)
+    host.free()
+
+
+def test_a_restored_state_takes_over_a_change_of_modal_damping_alike(path):
+    names = ["mesh.velocity", "bearing_1.force_uy"]
+    one, other = Host(path).start(), Host(path).start()
+    one.set({"mesh.transmission_error": 1e-6})
+    one.slave.doStep(0.0, 1e-4)
+    one.set({"gear_train.modal_damping": 0.04})
+    state = one.slave.getFMUstate()
+    content = one.slave.serializeFMUstate(state)
+    copy, buffer = fmi2FMUstate(), create_string_buffer(content, len(content))
+    other.slave.fmi2DeSerializeFMUstate(other.slave.component, buffer, len(content), byref(copy))
+    other.slave.setFMUstate(copy)
+    assert other.get(*names) == one.get(*names)
+    one.slave.doStep(1e-4, 1e-4)
+    other.slave.doStep(1e-4, 1e-4)
+    assert other.get(*names) == one.get(*names)
+    one.free()
+    other.free()
 
 
 def test_fmus_of_different_models_and_of_the_same_model_in_one_process(path, tmp_path):

@@ -9,6 +9,8 @@ from ..errors import AccuracyError
 from ..numerics.arrays import Real
 from .structure import Structure
 
+_NULL = 1e-11  # residual |K R| / |K||R| of a declared rigid mode; rounding leaves 1e-14
+_FLOOR = 512.0 * np.finfo(float).eps  # elastic eigenvalues below this part of the largest lose digits to its rounding
 _CLUSTER = 1e-4  # modes whose eigenvalues differ by less (relatively) are separated among themselves
 
 
@@ -32,22 +34,28 @@ def modes(structure: Structure) -> Modes:
     elastic modes are made orthogonal to them, so that low frequencies keep all digits. Eigenvalues are Rayleigh
     quotients of the sharpened shapes, whose error is the square of that of the shapes.
 
-    Raises AccuracyError where the structure has rigid-body motions that it did not declare, or the reverse.
+    Raises AccuracyError where the structure has rigid-body motions that it did not declare, or the reverse, and
+    where its highest eigenvalue (of its shortest span) is so high that the lowest ones drown in its rounding.
     """
     M, K, R = structure.mass, structure.stiffness, structure.rigid_modes
     count = R.shape[1]
+    residual = abs(K @ R).max(axis=0, initial=0.0) > _NULL * (abs(K) @ abs(R)).max(axis=0, initial=0.0)
+    if residual.any():
+        raise AccuracyError(
+            f"{np.count_nonzero(residual)} of the {count} rigid-body modes that the structure declares deform it"
+        )
     if count:
         R = R @ scipy.linalg.inv(scipy.linalg.cholesky(R.T @ M @ R, lower=False))
     rough, vectors = scipy.linalg.eigh(K, M)
     elastic = vectors[:, count:]
     elastic -= R @ (R.T @ (M @ elastic))
     elastic, eigenvalues = _sharpen(elastic, K, M)
-    if len(eigenvalues):
-        floor = 1e-12 * rough[-1]
-        if eigenvalues.min() <= floor or (count and abs(rough[:count]).max() > 1e-3 * eigenvalues.min() + floor):
-            raise AccuracyError(
-                f"the structure declares {count} rigid-body modes, but its stiffness has a different null space"
-            )
+    if len(eigenvalues) and not eigenvalues.min() > _FLOOR * rough[-1]:
+        raise AccuracyError(
+            f"beside the {count} rigid-body modes that the structure declares, its lowest mode is rigid within the "
+            f"rounding of its highest (eigenvalues {eigenvalues.min():.3g} and {rough[-1]:.3g} (rad/s)^2): it can move "
+            "in more ways without deforming, or one of its spans is too short (below some micrometres)"
+        )
     order = np.argsort(eigenvalues)
     return Modes(np.concatenate([np.zeros(count), eigenvalues[order]]), np.hstack([R, elastic[:, order]]))
 

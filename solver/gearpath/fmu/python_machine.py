@@ -48,6 +48,7 @@ class Machine:
         self._frequency = float(frequency)
         self._inputs = {load.name: 0.0 for load in self._solved.loads}
         self._state = np.zeros(2 * len(self._solved.eigenvalues))
+        self._begun = False  # whether a step was made
         self._twin: TimeTwin | None = None
         self._propagators: dict[float, Propagator] = {}
         self._values: dict[str, float] | None = None  # of the outputs over time
@@ -102,11 +103,14 @@ class Machine:
             try:
                 self._solved = assemble(redesign(self._start, self._wanted.design)).modal()
                 self._state = np.zeros(2 * len(self._solved.eigenvalues))
+                self._begun = False
             except _FAILURES as error:
                 problems.append(f"The design cannot be built and keeps its last valid parameters: {error}.")
                 self._wanted.design = dict(self._valid.design)
         if self._wanted != self._valid:
-            self._network = self._wanted.applied(self._solved)
+            network = self._wanted.applied(self._solved)
+            self._keep_velocity(network)
+            self._network = network
             self._valid = self._wanted.copy()
             self._forget()
         if problems:
@@ -126,7 +130,7 @@ class Machine:
             ) from error
         if not np.isfinite(state).all():
             raise InputError("The step overflows, so it is not made; check the inputs and their units")
-        self._state, self._values = state, None
+        self._state, self._values, self._begun = state, None, True
 
     def plain(self) -> dict[str, Any]:
         """Everything that the machine's future depends on, as dictionaries, lists and numbers."""
@@ -136,6 +140,7 @@ class Machine:
             "inputs": dict(self._inputs),
             "frequency": self._frequency,
             "state": self._state.tolist(),
+            "begun": self._begun,
         }
 
     def restore(self, plain: Mapping[str, Any]) -> None:
@@ -147,8 +152,20 @@ class Machine:
         self._pending = self._wanted != self._valid
         self._inputs = {name: float(value) for name, value in plain["inputs"].items()}
         self._frequency = float(plain["frequency"])
-        self._state = np.array(plain["state"], float)
+        self._state, self._begun = np.array(plain["state"], float), bool(plain["begun"])
         self._values = self._response = None
+
+    def _keep_velocity(self, network: ModalNetwork) -> None:
+        """Keep q' = s + sum X d e, of which s is the state, where another network has another X.
+
+        A velocity cannot jump with a damping ratio. Before the first step there is nothing to keep: the machine
+        starts at rest with all inputs 0.
+        """
+        if self._begun:
+            change = self._network.damping - network.damping
+            for load in network.loads:
+                if load.mesh_displacement is not None:
+                    self._state[len(change) :] += change * load.mesh_displacement * self._inputs[load.name]
 
     def _forget(self) -> None:
         """Drop what was computed from the parameters."""

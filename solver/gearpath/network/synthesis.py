@@ -5,6 +5,13 @@
 
 Y is never stored: the component mobilities are modal (Eq. 11), so W is one real product of the packed residues
 P_pr P_qr with the modal responses of the chunk.
+
+At the free-free resonance of an undamped component Y is infinite although the coupled answer is not. Lines that close
+to one (`_RESONANT`) are solved in modal coordinates without eliminating the components:
+
+    [diag(L - w^2 + i w X) + P^T (K + i w C) P] q~ = f - P^T (K + i w C) P d e,    g = (K + i w C) P (q~ + d e)
+
+with f = column of a force, w^2 column e of a transmission error, and the elastic velocity i w q~.
 """
 
 from collections.abc import Sequence
@@ -14,10 +21,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..components.mobility import modal_response
+from ..errors import AccuracyError
 from ..numerics.arrays import Complex, Real
 from ..numerics.lines import real_times_complex, solve_lines
 from .modal import ModalNetwork
 from .records import Load
+
+_RESONANT = 1e-6  # distance |w_r^2 - w^2 + i w X_r| / w^2 of a mode, below which its mobility loses six digits or more
 
 
 @dataclass(frozen=True)
@@ -66,9 +76,16 @@ class Synthesis:
         return int(16 * (N * (1 + 3 * len(self.loads)) + 5 * n_p**2 + 4 * n_p * len(self.loads)))
 
     def solve(self, omega: Real) -> Response:
-        """Coupled response at the angular frequencies `omega` (rad/s, all positive)."""
+        """Coupled response at the angular frequencies `omega` (rad/s, all positive).
+
+        Raises AccuracyError where it is not finite: at an undamped resonance of the whole machine.
+        """
         network, P = self.network, self.P
-        response = modal_response(network.eigenvalues, network.damping, omega)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            response = modal_response(network.eigenvalues, network.damping, omega)
+        # |i w / (w_r^2 - w^2 + i w X_r)| = 1 / (w * relative distance); NaN where both parts are 0
+        resonant = np.flatnonzero(~(abs(response) * (omega * _RESONANT) < 1.0).all(axis=0))
+        response[:, resonant] = 0.0  # replaced below
         free, own = self._free_motion(response, omega)
         W = self._interface_mobility(response)
         A = self._joint_force(W, omega)
@@ -77,7 +94,28 @@ class Synthesis:
         relative = real_times_complex(P, free if own is None else free + own)
         g = solve_lines(A, self._joint_force(relative, omega))
         elastic = free - response[:, None] * real_times_complex(P.T, g)
+        for line in resonant:
+            self._solve_coupled(float(omega[line]), g[:, :, line], elastic[:, :, line])
+        finite = np.isfinite(elastic).all(axis=(0, 1)) & np.isfinite(g).all(axis=(0, 1))
+        if not finite.all():
+            raise _not_finite(float(omega[np.argmin(finite)]))
         return Response(g, elastic, elastic if own is None else elastic + own)
+
+    def _solve_coupled(self, w: float, force: Complex, elastic: Complex) -> None:
+        """Solve one line in modal coordinates; writes `force` (n_p, m) and `elastic` (N, m)."""
+        network, P = self.network, self.P
+        C, K = np.split(self._joints, 2)
+        Z = K + 1j * w * C
+        dynamic = np.diag(network.eigenvalues - w**2 + 1j * w * network.damping) + P.T @ (Z @ P)
+        held = np.column_stack(  # d of each load; 0 for a force
+            [np.zeros(len(dynamic)) if x.mesh_displacement is None else x.mesh_displacement for x in self.loads]
+        )
+        push = np.column_stack([x.column * (w**2 if x.is_transmission_error else 1.0) for x in self.loads])
+        try:
+            q = np.linalg.solve(dynamic, push - P.T @ (Z @ (P @ held)))
+        except np.linalg.LinAlgError as error:
+            raise _not_finite(w) from error
+        force[:], elastic[:] = Z @ (P @ (q + held)), 1j * w * q
 
     def _interface_mobility(self, response: Complex) -> Complex:
         """W = B Y B^T (n_p, n_p, F), summed over the components."""
@@ -107,6 +145,13 @@ class Synthesis:
             own = np.zeros_like(free) if own is None else own
             own[:, k] = load.mesh_displacement[:, None] * (1j * omega)
         return free, own
+
+
+def _not_finite(w: float) -> AccuracyError:
+    return AccuracyError(
+        f"the response is not finite at {w / (2.0 * np.pi):.12g} Hz, an undamped resonance of the machine; "
+        "add damping or change the frequency"
+    )
 
 
 def load_power(network: ModalNetwork, load: Load, solved: Response, which: int, omega: Real) -> Real:

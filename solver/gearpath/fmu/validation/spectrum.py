@@ -1,59 +1,62 @@
-"""The FMU's frequency-domain outputs against the solver, before and after a bearing is exchanged."""
+"""The FMU's frequency-domain outputs against the solver, before and after its parameters are exchanged."""
 
 import numpy as np
 
 from ...network.modal import ModalNetwork
-from ...network.power import is_moment_path, power_flow
+from ...network.power import PowerFlow, is_moment_path, power_flow, ratio
 from ...network.response import frequency_response
+from ...network.synthesis import Synthesis
 from ...numerics.arrays import Complex, Real
 from ..checks import Check
 from ..simulation import RunningFmu
+from .exchange import parameters
+from .measure import Drive, largest_deviation, relative, spring_force
 
-_LINES = 25
-
-
-def spectrum_check(fmu: RunningFmu, network: ModalNetwork, band: tuple[float, float], limit: float) -> Check:
-    """alpha and its parts relative to alpha, transfers relative to the largest of the output."""
-    f = np.geomspace(*band, _LINES)
-    return Check(
-        "frequency-domain outputs against the power flow",
-        _deviation(fmu, network, f),
-        limit,
-        f"alpha of all paths and transfers of all outputs at {_LINES} frequencies",
-    )
+_LINES, _EXCHANGED_LINES = 25, 5
 
 
-def exchange_check(fmu: RunningFmu, network: ModalNetwork, band: tuple[float, float], limit: float) -> Check:
-    """The same after the first path's stiffness was halved and its damping doubled in the running FMU."""
-    f = np.geomspace(*band, 5)
-    name = network.paths[0] if network.paths else network.joints[0].name
-    joint = next(j for j in network.joints if j.name == name)
-    changed = network.with_joint(name, 0.5 * joint.stiffness, 2.0 * joint.damping)
-    original = joint_parameters(network, name)
-    fmu.set(joint_parameters(changed, name))
-    deviation = _deviation(fmu, changed, f)
-    fmu.set(original)
-    return Check(
-        f"the same with {name} exchanged while running",
-        max(deviation, _deviation(fmu, network, f)),
-        limit,
-        "stiffness halved, damping doubled, then set back",
-    )
+def checks(
+    fmu: RunningFmu, network: ModalNetwork, changed: ModalNetwork, band: tuple[float, float], limit: float
+) -> list[Check]:
+    """Power ratios and transfers over the band; again with all parameters exchanged, and when they are set back."""
+    few = np.geomspace(*band, _EXCHANGED_LINES)
+    before = deviation(fmu, network, np.geomspace(*band, _LINES))
+    fmu.set(parameters(changed))
+    exchanged = deviation(fmu, changed, few)
+    fmu.set(parameters(network))
+    return [
+        Check(
+            "frequency-domain outputs against the power flow",
+            before,
+            limit,
+            f"power ratios and transfers of all outputs at {_LINES} frequencies",
+        ),
+        Check(
+            "the same with all joints and dampings exchanged",
+            float(np.max([exchanged, deviation(fmu, network, few)])),
+            limit,
+            f"at {_EXCHANGED_LINES} frequencies, and after they were set back",
+        ),
+    ]
 
 
-def joint_parameters(network: ModalNetwork, name: str) -> dict[str, float]:
-    """Values of a joint's tunable parameters by FMU variable."""
-    joint = next(j for j in network.joints if j.name == name)
-    values = {}
-    for what, matrix in (("stiffness", joint.stiffness), ("damping", joint.damping)):
-        for i in range(len(joint.dofs)):
-            for k in range(i, len(joint.dofs)):
-                entry = "" if joint.scalar else f"[{i + 1},{k + 1}]"
-                values[f"{name}.{what}{entry}"] = float(matrix[i, k])
-    return values
+def deviation(fmu: RunningFmu, network: ModalNetwork, f: Real) -> float:
+    """Largest deviation of the power ratios (relative to what flows) and of the transfers (of their yardstick)."""
+    ratios, transfers = _read(fmu, network, f)
+    omega = 2 * np.pi * f
+    flow = power_flow(network, omega)
+    expected, size = _expected_ratios(network, flow, omega)
+    linear = [o for o in network.outputs if o.quantity != "power"]
+    load = next(item for item in network.loads if item.name == network.excitation)
+    exact = frequency_response(network, omega, linear, [load])[:, :, 0]
+    force = load.equivalent_mass * omega[-1] ** 2 or 1.0
+    drive = Drive(force, float(omega[-1]), 1e-4 * spring_force(network, load))
+    names = [o.name for o in linear]
+    moved = largest_deviation(linear, dict(zip(names, transfers.T)), dict(zip(names, exact.T)), drive)
+    return float(np.max([relative(abs(ratios - expected), size[:, None]), moved]))
 
 
-def read_spectrum(fmu: RunningFmu, network: ModalNetwork, f: Real) -> tuple[Real, Complex]:
+def _read(fmu: RunningFmu, network: ModalNetwork, f: Real) -> tuple[Real, Complex]:
     """Power ratios (F, 3 + paths) and transfers (F, linear outputs) as the FMU gives them."""
     ratios = ["alpha", "alpha_force", "alpha_moment", *(f"{name}.alpha" for name in network.paths)]
     linear = [o.name for o in network.outputs if o.quantity != "power"]
@@ -67,19 +70,20 @@ def read_spectrum(fmu: RunningFmu, network: ModalNetwork, f: Real) -> tuple[Real
     return table[:, : len(ratios)], transfers
 
 
-def _deviation(fmu: RunningFmu, network: ModalNetwork, f: Real) -> float:
-    ratios, transfers = read_spectrum(fmu, network, f)
-    omega = 2 * np.pi * f
-    flow = power_flow(network, omega)
-    joints = [flow.share(lambda path, name=name: path.startswith(f"{name}.")) for name in network.paths]  # type: ignore[misc]
-    expected = np.array(
-        [flow.share(), flow.share(lambda path: not is_moment_path(path)), flow.share(is_moment_path), *joints]
-    ).T
-    gross = abs(flow.path_power).sum(axis=0) / np.where(flow.input_power > 0, flow.input_power, 1.0)
-    linear = [o for o in network.outputs if o.quantity != "power"]
+def _expected_ratios(network: ModalNetwork, flow: PowerFlow, omega: Real) -> tuple[Real, Real]:
+    """Power ratios as the FMU's outputs hold them, (F, 3 + paths), and the size that they are judged by, (F,).
+
+    That is what flows in all paths together; and active power that is a small rest of a large apparent power keeps
+    as many digits less as it is smaller.
+    """
+    rows = [flow.share(), flow.share(lambda path: not is_moment_path(path)), flow.share(is_moment_path)]
+    for name in network.paths:
+        own = [k for k, path in enumerate(flow.paths) if path.rsplit(".", 1)[0] == name]
+        rows.append(ratio(flow.path_power[own].sum(axis=0), flow.input_power))
     load = next(item for item in network.loads if item.name == network.excitation)
-    exact = frequency_response(network, omega, linear, [load])[:, :, 0]
-    size = abs(exact).max(axis=0)
-    errors = [abs(ratios - expected).max(axis=1) / np.where(gross > 0, gross, 1.0)]
-    errors.append((abs(transfers - exact) / np.where(size > 0, size, 1.0)).max(axis=1))
-    return float(np.max(errors))
+    solved = Synthesis(network, [load]).solve(omega)
+    drive = omega**2 if load.is_transmission_error else np.ones_like(omega)
+    conjugate = np.asarray(abs(load.column @ solved.elastic[:, 0]), float)
+    apparent = ratio(np.asarray(0.5 * conjugate * drive), flow.input_power)
+    gross = ratio(abs(flow.path_power).sum(axis=0), flow.input_power)
+    return np.array(rows).T, np.maximum(gross, 1e-6) * np.maximum(1.0, 1e-4 * apparent)

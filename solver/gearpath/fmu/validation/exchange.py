@@ -1,0 +1,40 @@
+"""Exchanging every tunable parameter of a running FMU at once, and what the network is then."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...network.modal import ModalNetwork
+from ..checks import Check
+from .measure import relative
+
+
+def exchanged(network: ModalNetwork) -> ModalNetwork:
+    """Every joint at half its stiffness and twice its damping, every modal damping half as large again."""
+    joints = tuple(replace(j, stiffness=0.5 * j.stiffness, damping=2.0 * j.damping) for j in network.joints)
+    damping = {name: 1.5 * ratio if ratio else 0.01 for name, ratio in network.modal_damping.items()}
+    return replace(network, joints=joints, modal_damping=damping)
+
+
+def parameters(network: ModalNetwork) -> dict[str, float]:
+    """Values of all tunable parameters by FMU variable."""
+    values = {f"{name}.modal_damping": float(ratio) for name, ratio in network.modal_damping.items()}
+    for joint in network.joints:
+        for what, matrix in (("stiffness", joint.stiffness), ("damping", joint.damping)):
+            for i in range(len(joint.dofs)):
+                for k in range(i, len(joint.dofs)):
+                    entry = "" if joint.scalar else f"[{i + 1},{k + 1}]"
+                    values[f"{joint.name}.{what}{entry}"] = float(matrix[i, k])
+    return values
+
+
+def start_check(description: Any, network: ModalNetwork) -> Check:
+    """Start values in the modelDescription against the model: an importer may set them all."""
+    wanted = parameters(network)
+    starts = {v.name: v.start for v in description.modelVariables if v.name in wanted}
+    found = np.array([float(starts[name]) if starts.get(name) is not None else np.nan for name in wanted])
+    expected = np.array(list(wanted.values()))
+    deviation = relative(abs(found - expected), np.maximum(abs(expected), 1e-300))
+    what = f"{len(wanted)} parameters, relative to the model's"
+    return Check("start values of the parameters", deviation, 1e-12, what)
