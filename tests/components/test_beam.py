@@ -127,3 +127,38 @@ def test_a_probe_between_nodes_reads_the_static_deflection_curve():
     assert (mesh.motion(z) @ q)[DOFS.index("uy")] == pytest.approx(expected, rel=1e-10)
     slope = force * (length * z - z**2 / 2) / (E * I)
     assert (mesh.motion(z) @ q)[DOFS.index("rx")] == pytest.approx(-slope, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("inner", "expected"),
+    [
+        (0.0, 6 * 1.3 / (7 + 6 * 0.3)),  # solid
+        (0.045, 0.533),  # m = 0.9
+        (0.05 * (1 - 1e-9), 2 * 1.3 / (4 + 3 * 0.3)),  # Cowper's thin-walled tube
+    ],
+)
+def test_cowper_coefficient(inner, expected):
+    assert Section(0.2, 0.05, inner).cowper_coefficient(0.3) == pytest.approx(
+        expected, rel=1e-3 if inner == 0.045 else 1e-8
+    )
+
+
+def test_left_out_shear_coefficient_is_that_of_each_section():
+    """Tip of a cantilever, one half hollow: bending of both, and shear with a coefficient of its own in each.
+
+    The probe reads the curve within the hollow element with the same coefficient.
+    """
+    hollow, solid, force = Section(0.1, 0.05, 0.045), Section(0.1, 0.05), 1000.0
+    mesh = mesh_shaft(Shaft(STEEL, (0, 0, 0), (hollow, solid), None, (1,)), [], ("uy", "rx"))
+    q = np.zeros(6)
+    q[2:] = np.linalg.solve(mesh.stiffness[2:, 2:], [0.0, 0.0, force, 0.0])
+    m2 = 0.9**2
+    kappa = 6 * 1.3 * (1 + m2) ** 2 / (8.8 * (1 + m2) ** 2 + 23.6 * m2)
+    E, G = STEEL.youngs_modulus, STEEL.shear_modulus
+    EI = E * hollow.area_moment, E * solid.area_moment
+    shear = 0.1 / (kappa * G * hollow.area), 0.1 / (6 * 1.3 / 8.8 * G * solid.area)
+    tip = (0.2**3 - 0.1**3) / (3 * EI[0]) + 0.1**3 / (3 * EI[1]) + sum(shear)
+    assert q[4] == pytest.approx(force * tip, rel=1e-10)
+    z = 0.04
+    expected = force * (z**2 * (3 * 0.2 - z) / (6 * EI[0]) + shear[0] * z / 0.1)
+    assert (mesh.motion(z) @ q)[DOFS.index("uy")] == pytest.approx(expected, rel=1e-10)

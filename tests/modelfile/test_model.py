@@ -31,9 +31,7 @@ def test_default_gearbox():
     assert model.frequency.points == 2000
     np.testing.assert_array_equal(model.frequency.frequencies(), np.linspace(20.0, 5000.0, 2000))
     np.testing.assert_array_equal(model.frequencies(), model.frequency.frequencies())
-    assert list(model.system.joints) == [f"bearing_{k}" for k in range(1, 5)] + [
-        f"mount_{k}" for k in range(1, 5)
-    ]
+    assert list(model.system.joints) == [f"bearing_{k}" for k in range(1, 5)] + [f"mount_{k}" for k in range(1, 5)]
 
 
 def test_default_gearbox_is_the_one_written_by_hand():
@@ -136,7 +134,11 @@ def test_what_the_system_holds():
     system = load(BASE).system
     output = system.components["train"].shafts["output"]
     assert output.length == pytest.approx(0.2)
-    assert output.shear_coefficient == pytest.approx(6 * 1.3 / (7 + 6 * 0.3))
+    assert output.shear_coefficient is None
+    wide = (1 + 0.25**2) ** 2
+    hollow = 6 * 1.3 * wide / (8.8 * wide + 23.6 * 0.25**2)
+    assert [output.shear_coefficient_of(s) for s in output.sections] == pytest.approx([hollow, 6 * 1.3 / 8.8])
+    assert system.components["train"].shafts["input"].shear_coefficient_of(output.sections[0]) == 0.886
     assert output.elements == (8,)
     assert system.joints["front"].between == (Port("train", "input", z=0.0), Port("casing"))
     np.testing.assert_allclose(system.joints["front"].damping, [[120.0, 1.8], [1.8, 0.06]], rtol=1e-15)

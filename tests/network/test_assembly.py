@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from systems import PLANAR, default_gearbox, scaled
+from systems import BEARING, PLANAR, STEEL, default_gearbox, scaled
 
-from gearpath.components import DOFS
+from gearpath.components import DOFS, GearTrain, Section, Shaft
 from gearpath.joints import Joint, Port
 from gearpath.network.assemble import assemble
 from gearpath.network.power import power_flow
@@ -114,3 +114,34 @@ def test_a_released_joint_carries_nothing(modal):
     assert np.all(solved.force[:2] == 0.0)
     assert np.all(abs(solved.force[2:4]).max(axis=0) > 0.0)
     assert modal.joints[0].dofs == PLANAR
+
+
+def with_quill():
+    """Bearings 1 and 2 carry the input shaft in a hollow quill, which has its own bearings in the casing."""
+    system = default_gearbox()
+    quill = Shaft(STEEL, (-0.04975, 0.0, -0.15), (Section(0.3, 0.06, 0.04),), None, (4,))
+    joints, casing = dict(system.joints), Port("casing")
+    damping = scaled(BEARING, 1e-6)
+    for name, z in (("bearing_1", 0.025), ("bearing_2", 0.275)):
+        shaft, _ = joints[name].between
+        joints[name] = replace(joints[name], between=(shaft, Port("quill", "tube", z)))
+    for k, z in ((5, 0.0), (6, 0.3)):
+        joints[f"bearing_{k}"] = Joint("bearing", (Port("quill", "tube", z), casing), PLANAR, BEARING, damping)
+    components = {**system.components, "quill": GearTrain({"tube": quill}, {}, 0.015)}
+    return replace(system, components=components, joints=joints)
+
+
+def test_power_through_bearings_in_series_is_counted_once():
+    """What leaves the paths is lost in the components and bearings before them; the rest is lost in the casing."""
+    network = assemble(with_quill())
+    assert network.paths == ("bearing_3", "bearing_4", "bearing_5", "bearing_6")
+    flow = power_flow(network.modal(), 2 * np.pi * np.geomspace(20.0, 5000.0, 300))
+    assert np.all((flow.share() > 0.0) & (flow.share() < 1.0))
+    mounts = [k for k, name in enumerate(flow.elements) if name.startswith("mount")]
+    np.testing.assert_allclose(flow.transmitted_power, flow.dissipated_power[mounts].sum(axis=0), rtol=1e-6)
+
+
+def test_a_casing_on_bearings_to_the_ground_keeps_its_paths():
+    system = default_gearbox()
+    joints = {name: replace(joint, kind="bearing") for name, joint in system.joints.items()}
+    assert assemble(replace(system, joints=joints)).paths[:4] == ("bearing_1", "bearing_2", "bearing_3", "bearing_4")

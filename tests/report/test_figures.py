@@ -7,7 +7,8 @@ import pytest
 from report_reader import BEARINGS, gearbox, mirrored
 
 import gearpath as gp
-from gearpath.report.figures import balance_figure, path_figure, ranking_figure, ratio_figure, shares_figure
+from gearpath.report.balance import balance_figure, shares_figure
+from gearpath.report.figures import path_figure, ranking_figure, ratio_figure
 from gearpath.report.layout import RETURNED, signed
 from gearpath.report.ranking import bands, ranking
 from gearpath.report.results import compute

@@ -142,3 +142,10 @@ def test_simulated_phases_lie_beside_the_solver(model, network):
     (figure,) = bode_figures([report(GOOD, comparisons=[comparison(model, error=1e-3j)])], network)
     item = comparison(model)
     np.testing.assert_allclose(figure.data[3]["y"], np.degrees(np.angle(item.solver)) + np.degrees(1e-3), atol=1e-3)
+
+
+def test_bode_figures_have_headings_and_round_ticks(model, network, read):
+    page = read(model, validations=[report(GOOD, comparisons=[comparison(model)])])
+    assert "bearing_1.force_uy" in page.within("h3")
+    (figure,) = bode_figures([report(GOOD, comparisons=[comparison(model)])], network)
+    assert figure.layout["xaxis"]["ticktext"] == ["20", "50", "100", "200", "500", "1000", "2000", "5000"]

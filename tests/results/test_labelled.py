@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import gearpath as gp
+from gearpath.results import labelled
 
 MODEL = Path(__file__).resolve().parents[2] / "models" / "gearbox.toml"
 
@@ -48,6 +49,24 @@ def test_every_quantity_has_units_and_every_path_its_names(flow):
 
 def test_a_rigid_casing_dissipates_nothing(flow):
     assert np.all(flow.dissipated_power.sel(element="casing") == 0.0)
+
+
+def test_ratios_are_0_where_no_power_enters(model, monkeypatch):
+    """Not the watts of the path; the transmitted power stays what it is."""
+    solve = labelled.power_flow
+
+    def unfed(*arguments):
+        found = solve(*arguments)
+        found.input_power[1] = 0.0
+        return found
+
+    whole = gp.power_flow(model, [100.0, 1000.0, 3000.0])
+    monkeypatch.setattr(labelled, "power_flow", unfed)
+    flow = gp.power_flow(model, [100.0, 1000.0, 3000.0])
+    for name in ("alpha", "alpha_force", "alpha_moment", "path_alpha"):
+        assert np.all(flow[name].isel(frequency=1) == 0.0), name
+        assert np.all(flow[name].isel(frequency=[0, 2]) == whole[name].isel(frequency=[0, 2])), name
+    assert np.array_equal(flow.transmitted_power, whole.transmitted_power)
 
 
 @pytest.mark.parametrize("frequencies", [[0.0], [-5.0], [np.nan], [np.inf], [], [[1.0, 2.0]], "many"])

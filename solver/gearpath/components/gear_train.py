@@ -38,7 +38,7 @@ class Shaft:
     material: Material
     origin: Vector
     sections: tuple[Section, ...]
-    shear_coefficient: float
+    shear_coefficient: float | None  # None: Cowper's of each section
     elements: tuple[int, ...]  # elements of each span between stations; one number holds for every span
     disks: tuple[Disk, ...] = ()
     beam: str = "timoshenko"
@@ -47,6 +47,11 @@ class Shaft:
     def length(self) -> float:
         """Total length, m."""
         return sum(section.length for section in self.sections)
+
+    def shear_coefficient_of(self, section: Section) -> float:
+        """The shear coefficient of one of the sections: the shaft's own, or Cowper's."""
+        given = self.shear_coefficient
+        return section.cowper_coefficient(self.material.poisson_ratio) if given is None else given
 
     def position(self, z: float) -> Vector:
         """Global position of the station z."""

@@ -10,7 +10,8 @@ from ..numerics.arrays import Real
 from .structure import Structure
 
 _NULL = 1e-11  # residual |K R| / |K||R| of a declared rigid mode; rounding leaves 1e-14
-_FLOOR = 512.0 * np.finfo(float).eps  # elastic eigenvalues below this part of the largest lose digits to its rounding
+_FLOOR = 16.0 * np.finfo(float).eps  # elastic eigenvalues below this part of the largest lose digits to its rounding
+_SKEW = 1e-6  # of the elastic modes' modal mass matrix: a mode that is one of the others shows here
 _CLUSTER = 1e-4  # modes whose eigenvalues differ by less (relatively) are separated among themselves
 
 
@@ -49,11 +50,13 @@ def modes(structure: Structure) -> Modes:
     rough, vectors = scipy.linalg.eigh(K, M)
     elastic = vectors[:, count:]
     elastic -= R @ (R.T @ (M @ elastic))
-    elastic, eigenvalues = _sharpen(elastic, K, M)
-    if len(eigenvalues) and not eigenvalues.min() > _FLOOR * rough[-1]:
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # judged below
+        elastic, eigenvalues = _sharpen(elastic, K, M)
+    skew = abs(elastic.T @ M @ elastic - np.eye(len(eigenvalues))).max(initial=0.0)
+    if len(eigenvalues) and not (skew < _SKEW and eigenvalues.min() > _FLOOR * rough[-1]):
         raise AccuracyError(
-            f"beside the {count} rigid-body modes that the structure declares, its lowest mode is rigid within the "
-            f"rounding of its highest (eigenvalues {eigenvalues.min():.3g} and {rough[-1]:.3g} (rad/s)^2): it can move "
+            f"beside the {count} rigid-body modes that the structure declares, modes drown in the rounding of its "
+            f"highest (lowest eigenvalue {eigenvalues.min():.3g}, highest {rough[-1]:.3g} (rad/s)^2): it can move "
             "in more ways without deforming, or one of its spans is too short (below some micrometres)"
         )
     order = np.argsort(eigenvalues)

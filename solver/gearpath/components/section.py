@@ -22,7 +22,12 @@ class Section:
         """I = pi (D^4 - d^4) / 64 about a diameter, m^4; the polar moment is 2 I."""
         return pi * (self.outer**4 - self.inner**4) / 64.0
 
+    def cowper_coefficient(self, poisson_ratio: float) -> float:
+        """Shear coefficient of the section (Cowper 1966), m = inner / outer.
 
-def cowper_coefficient(poisson_ratio: float) -> float:
-    """Shear coefficient of a solid round section, 6 (1 + nu) / (7 + 6 nu) (Cowper 1966): 0.886 for nu = 0.3."""
-    return 6.0 * (1.0 + poisson_ratio) / (7.0 + 6.0 * poisson_ratio)
+        6 (1 + nu) (1 + m^2)^2 / ((7 + 6 nu) (1 + m^2)^2 + (20 + 12 nu) m^2): for nu = 0.3 it is 0.886 for a solid
+        shaft and 0.533 for m = 0.9.
+        """
+        m2 = (self.inner / self.outer) ** 2
+        wide, nu = (1.0 + m2) ** 2, poisson_ratio
+        return 6.0 * (1.0 + nu) * wide / ((7.0 + 6.0 * nu) * wide + (20.0 + 12.0 * nu) * m2)

@@ -49,7 +49,7 @@ class ShaftMesh:
             out[picked, first + np.arange(len(picked))] = 1.0
             return out
         section = section_at(self.shaft, (self.nodes[e] + self.nodes[e + 1]) / 2.0)
-        phi = shear_parameter(section, self.shaft.material, length, self.shaft.shear_coefficient)
+        phi = shear_parameter(section, self.shaft.material, length, self.shaft.shear_coefficient_of(section))
         N, _ = shape_functions(xi, length, phi)
         first = e * len(self.dofs)
         out[:, first : first + 2 * len(picked)] = N[:, np.concatenate([picked, picked + 6])]
@@ -103,7 +103,8 @@ def mesh_shaft(shaft: Shaft, bearings: Sequence[float], dofs: tuple[str, ...]) -
     first = 0
     for (start, end), count in zip(pairwise(stations), counts):  # the elements of a span are all alike
         section = section_at(shaft, (start + end) / 2.0)
-        element = timoshenko_element(section, shaft.material, (end - start) / count, shaft.shear_coefficient)
+        kappa = shaft.shear_coefficient_of(section)
+        element = timoshenko_element(section, shaft.material, (end - start) / count, kappa)
         element_K, element_M = (matrix[chosen] for matrix in element)
         for e in range(first, first + count):
             block = slice(e * width, (e + 2) * width)

@@ -1,7 +1,6 @@
 """From a checked file to the `System` that the physics works on."""
 
 from ..components import Disk, GearTrain, Material, Mesh, RigidBody, Section, Shaft
-from ..components.section import cowper_coefficient
 from ..joints import Joint, Port
 from ..joints.joint import Matrix
 from ..network.system import Actuator, Component, MeshExcitation, PointExcitation, Sensor, System, Vector
@@ -18,10 +17,7 @@ def build_system(file: FileTable) -> System:
         components={name: _component(file, table) for name, table in file.components.items()},
         joints={name: _joint(file, table) for name, table in file.joints.items()},
         excitation=_excitation(file, file.excitation),
-        actuators={
-            name: Actuator(_port(file, table), table.dof, _at(table))
-            for name, table in file.actuators.items()
-        },
+        actuators={name: Actuator(_port(file, table), table.dof, _at(table)) for name, table in file.actuators.items()},
         sensors={
             name: Sensor(_port(file, table), table.dof, table.quantity, _at(table))
             for name, table in file.sensors.items()
@@ -48,12 +44,11 @@ def build_shaft(file: FileTable, table: ShaftTable) -> Shaft:
         sections: tuple[Section, ...] = (Section(table.length, table.diameter),)
     else:
         sections = tuple(Section(part.length, part.outer, part.inner) for part in table.sections)
-    kappa = table.shear_coefficient
     return Shaft(
         material=material,
         origin=table.origin,
         sections=sections,
-        shear_coefficient=cowper_coefficient(material.poisson_ratio) if kappa is None else kappa,
+        shear_coefficient=table.shear_coefficient,
         elements=table.elements if isinstance(table.elements, tuple) else (table.elements,),
         disks=tuple(Disk(**disk.model_dump()) for disk in table.disks),
         beam=table.beam,

@@ -70,7 +70,7 @@ class ShaftTable(Table):
     sections: Annotated[Several[SectionTable], Field(description="Sections from the first end on")] = ()
     beam: Annotated[str, Choice("beam theory", ("timoshenko",))] = "timoshenko"
     shear_coefficient: Annotated[
-        float | None, Quantity("shear coefficient (left out: Cowper's)", above=0.0, at_most=1.0)
+        float | None, Quantity("shear coefficient (left out: Cowper's of each section)", above=0.0, at_most=1.0)
     ] = None
     elements: Annotated[
         int | tuple[int, ...],
@@ -84,17 +84,13 @@ class MeshTable(Table):
 
     between: Annotated[tuple[str, str], Pair("two gears, shaft.disk", ("input.pinion", "output.wheel"))]
     stiffness: Annotated[float, Quantity("mesh stiffness", "N/m", above=0.0)]
-    base_radii: Annotated[
-        tuple[float, float], Row("base radii of both gears", _length("base radius", 20.0), 2)
-    ]
+    base_radii: Annotated[tuple[float, float], Row("base radii of both gears", _length("base radius", 20.0), 2)]
 
 
 class GearTrainTable(Table):
     """Shafts, disks and meshes, solved as one component."""
 
     kind: Annotated[Literal["gear_train"], Field(description="Gear train")]
-    modal_damping: Annotated[
-        float, Quantity("damping ratio of every elastic mode", at_least=0.0, below=1.0)
-    ] = 0.0
+    modal_damping: Annotated[float, Quantity("damping ratio of every elastic mode", at_least=0.0, below=1.0)] = 0.0
     shafts: Annotated[Named[ShaftTable], Field(description="Shafts by name")]
     meshes: Annotated[Named[MeshTable], Field(description="Gear meshes by name", default_factory=dict)]

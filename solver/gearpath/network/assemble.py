@@ -31,8 +31,21 @@ class Network:
 
     @property
     def paths(self) -> tuple[str, ...]:
-        """The joints that count as power flow paths: all bearings."""
-        return tuple(joint.name for joint in self.joints if joint.kind == "bearing")
+        """The joints that count as power flow paths: the bearings, of bearings in series the last one.
+
+        A bearing into a component that is itself the first of `between` of another bearing (shaft to quill, quill to
+        casing) is not counted: its power is counted where it goes on. Nothing goes on into the ground.
+        """
+        bearings = {name: joint for name, joint in self.system.joints.items() if joint.kind == "bearing"}
+
+        def goes_on(name: str) -> bool:
+            receiver = bearings[name].between[1].component
+            return any(
+                joint.between[0].component == receiver and other != name and not joint.between[1].is_ground
+                for other, joint in bearings.items()
+            )
+
+        return tuple(name for name in bearings if not goes_on(name))
 
     def modal(self) -> ModalNetwork:
         """The same network in all free-free modes of its components (no truncation)."""

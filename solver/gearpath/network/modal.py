@@ -24,7 +24,7 @@ class ModalNetwork:
     loads: tuple[Load, ...]
     outputs: tuple[Output, ...]
     excitation: str  # the load that power ratios and frf outputs refer to
-    paths: tuple[str, ...]  # joints that count as power flow paths (all bearings)
+    paths: tuple[str, ...]  # joints that count as power flow paths (Network.paths)
 
     @property
     def damping(self) -> Real:

@@ -64,7 +64,7 @@ def _bode(
     span = [float(np.log10(every.min() / 1.1)), float(np.log10(every.max() * 1.1))]
     layout = page(
         460,
-        xaxis=axis("frequency, Hz", type="log", range=span, anchor="y2", dtick="D2" if span[1] - span[0] < 1.5 else 1),
+        xaxis=axis("frequency, Hz", type="log", range=span, anchor="y2", **_ticks(*span)),
         yaxis=axis(f"|H|, dB re 1 {spaced(unit)}", domain=[0.4, 1.0]),
         yaxis2=axis("phase, °", domain=[0.0, 0.33], range=[-200, 200], tickvals=[-180, -90, 0, 90, 180]),
     )
@@ -75,7 +75,15 @@ def _bode(
         f"Largest deviation of a marker, relative to the largest value of the solver there: {number(worst, 2)}."
     )
     words = f"Bode plot of {name}: {plural(len(found), 'simulated FMU')} over the solver's curve."
-    return Figure(f"bode-{k}", caption, words, data, layout)
+    return Figure(f"bode-{k}", caption, words, data, layout, heading=name)
+
+
+def _ticks(low: float, high: float) -> dict[str, Any]:
+    """Ticks of a logarithmic axis from 10^low to 10^high: 1, 2, 5, 10 ... over a few decades, else the decades."""
+    steps = (1, 2, 5) if high - low < 3.2 else (1,)
+    values = [step * 10.0**k for k in range(int(np.floor(low)), int(np.ceil(high)) + 1) for step in steps]
+    shown = [value for value in values if low <= np.log10(value) <= high]
+    return {"tickvals": shown, "ticktext": [f"{value:g}" for value in shown]} if len(shown) > 1 else {}
 
 
 def _points(item: Comparison, label: str, colour: str, symbol: str) -> list[Trace]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..fmu.checks import ValidationReport
 from .model_tables import excitation_words
+from .moments import moments
 from .ranking import Share, bands, leaders, over, ranking, receiver_names, supplied, total, whole_band
 from .results import Results
 from .wording import decibel, given, level, listed, number, percent, plural
@@ -58,7 +59,7 @@ def findings(results: Results, validations: Sequence[ValidationReport]) -> list[
         found = [
             Finding("Power ratio", _how_much(results)),
             Finding("Bearings", _which_bearings(results)),
-            Finding("Moments", _moments(results)),
+            Finding("Moments", moments(results)),
         ]
     balance = (
         f"Input power and the sum of all dissipated powers agree within {number(results.residual.max(), 2)} "
@@ -161,54 +162,6 @@ def _named(items: Sequence[Share]) -> str:
         rest = items[LISTED - 1 :]
         words[LISTED - 1 :] = [f"{len(rest)} more ({percent(sum(abs(item.share) for item in rest))})"]
     return listed(words)
-
-
-def _moments(results: Results) -> str:
-    if not results.moment.any():
-        return "The bearings have no moment paths."
-    if not results.alpha_moment.any():
-        return "The moment paths carry no net power (nothing above rounding)."
-    band = whole_band(results.frequency)
-    sums = total(results, band)
-    back = float(np.mean(results.alpha_moment < 0.0))
-    force, moment = percent(over(sums.force, sums.ratio)), percent(abs(over(sums.moment, sums.ratio)))
-    often = f"on {percent(back)} of the lines" if back < 1.0 else "on every line"
-    if sums.moment < 0.0:
-        text = (
-            f"Summed over {band.label}, the moment paths together return power to the source, {moment} of the net "
-            f"transmitted power (they do so {often}); the force paths carry {force} of it."
-        )
-    else:
-        also = f" (on balance; they return power {often})" if back else ""
-        text = (
-            f"Summed over {band.label}, the moment paths together carry {moment} of the net transmitted power{also}, "
-            f"the force paths {force}."
-        )
-    return text + _heaviest_moment(results) + _single_paths(results)
-
-
-def _heaviest_moment(results: Results) -> str:
-    """Where moments matter most beside forces."""
-    force, moment = abs(results.alpha_force), abs(results.alpha_moment)
-    weight = np.divide(moment, force + moment, out=np.zeros_like(moment), where=moment > 0.0)
-    at = int(np.argmax(weight))
-    minus = " (minus: back into the source)" if min(results.alpha_moment[at], results.alpha_force[at]) < 0.0 else ""
-    return (
-        f" Moment paths weigh most at {number(results.frequency[at], 4)} Hz, where they pass "
-        f"{percent(results.alpha_moment[at])} of the input power and the force paths "
-        f"{percent(results.alpha_force[at])}{minus}."
-    )
-
-
-def _single_paths(results: Results) -> str:
-    single = float(np.mean((results.path_alpha < 0.0).any(axis=0)))
-    if not single:
-        return " No single path returns power to the source."
-    where = "every line" if single == 1.0 else f"{percent(single)} of the lines"
-    return (
-        f" At least one of the {plural(len(results.paths), 'path')} returns power on {where}, so that levels of "
-        "single paths cannot be added without their directions."
-    )
 
 
 def _checked(validations: Sequence[ValidationReport]) -> str:

@@ -30,6 +30,7 @@ class Figure:
     described: str
     data: list[Trace] = field(default_factory=list)
     layout: dict[str, Any] = field(default_factory=dict)
+    heading: str = ""  # above the plot, where several figures share a section
 
     @property
     def height(self) -> int:

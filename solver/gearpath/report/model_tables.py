@@ -52,7 +52,7 @@ def shaft_table(system: System) -> Table:
                     given(shaft.material.youngs_modulus),
                     given(shaft.material.poisson_ratio),
                     given(shaft.material.density),
-                    given(shaft.shear_coefficient),
+                    ", ".join(dict.fromkeys(given(shaft.shear_coefficient_of(s)) for s in shaft.sections)),
                 ]
             )
     head = ["shaft", "beam", "length, m", "diameter (bore), m", "first end (x, y, z), m", "elements"]

@@ -12,6 +12,7 @@ from ..errors import InputError, MissingExtraError
 from ..files import write_text
 from ..fmu.checks import ValidationReport
 from . import figures, findings, tables
+from .balance import balance_figure, shares_figure
 from .bode import bode_figures
 from .layout import Figure
 from .model_tables import excitation_words, model_tables
@@ -70,7 +71,7 @@ def figure_data(drawn: Sequence[Figure]) -> str:
 def _content(model: Model, results: Results, validations: Sequence[ValidationReport]) -> dict[str, Any]:
     carried = [figures.ratio_figure(results)] if results.paths else []
     paths = [figures.path_figure(results), figures.ranking_figure(results)] if results.paths else []
-    balance = [figures.balance_figure(results), figures.shares_figure(results)]
+    balance = [balance_figure(results), shares_figure(results)]
     bode = bode_figures(validations, results.network)
     return {
         "title": model.name,

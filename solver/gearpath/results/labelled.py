@@ -42,9 +42,11 @@ def labelled_power_flow(
 
 def _dataset(network: ModalNetwork, f: ArrayLike, flow: PowerFlow, amplitude: float) -> xr.Dataset:
     dofs = [path.rsplit(".", 1)[1] for path in flow.paths]
+    transmitted = flow.transmitted_power
     alpha_path = np.divide(
         flow.path_power, flow.input_power, out=flow.path_power, where=flow.input_power != 0.0
     )  # in place: the powers are not needed again
+    alpha_path[:, flow.input_power == 0.0] = 0.0
     moment = np.array([is_moment_path(path) for path in flow.paths], bool)
     alpha = alpha_path.sum(axis=0)
     ratios = {"units": "1"}
@@ -55,7 +57,7 @@ def _dataset(network: ModalNetwork, f: ArrayLike, flow: PowerFlow, amplitude: fl
             "input_power": (lines, flow.input_power, {"units": "W", "long_name": "input power, time average"}),
             "transmitted_power": (
                 lines,
-                alpha * flow.input_power,
+                transmitted,
                 {"units": "W", "long_name": "net power through all paths into the receivers, time average"},
             ),
             "alpha": (lines, alpha, {**ratios, "long_name": "power ratio, transmitted to input (Eq. 5a)"}),

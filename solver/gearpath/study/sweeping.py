@@ -83,8 +83,8 @@ def _twin_checks(network: ModalNetwork, omega: Real) -> list[Check]:
     frequency = frequency_response(network, omega, twin.outputs, twin.loads)
     largest = abs(frequency).max(axis=0)
     deviation = abs(time - frequency)
-    # what nearly vanishes by symmetry is judged by 1e-9 of the output's largest value: below, it is rounding
-    near = np.max(deviation / np.maximum(abs(frequency), 1e-9 * np.where(largest > 0, largest, 1.0)))
+    # what nearly vanishes by symmetry is judged by 1e-8 of the output's largest value: below, it is rounding
+    near = np.max(deviation / np.maximum(abs(frequency), 1e-8 * np.where(largest > 0, largest, 1.0)))
     poles = np.linalg.eigvals(twin.A)
     return [
         Check(

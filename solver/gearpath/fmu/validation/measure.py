@@ -28,7 +28,7 @@ class Drive:
 
 
 def spring_force(network: ModalNetwork, load: Load) -> float:
-    """K, N/m: a transmission error passes the joints as a difference of motions that vanishes, with rounding eps K e."""
+    """K, N/m: a transmission error passes the joints as a vanishing difference of motions, with rounding eps K e."""
     if not load.is_transmission_error:
         return 0.0
     return max((float(abs(joint.stiffness).max()) for joint in network.joints), default=0.0)

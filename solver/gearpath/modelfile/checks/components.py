@@ -9,7 +9,7 @@ from ..tables import FileTable, InertiaTable, RigidBodyTable
 from ..train_tables import DiskTable, GearTrainTable, ShaftTable
 from ..wording import show
 
-ROUNDED = 1e-3  # printed inertias are rounded: a flat body may miss the triangle inequality by this part
+ROUNDED = 1e-3  # printed numbers are rounded: inertias and base radii may miss their conditions by this part
 
 
 def check_components(file: FileTable) -> None:
@@ -29,9 +29,7 @@ def check_components(file: FileTable) -> None:
 
 
 def _check_inertia(table: InertiaTable, key: str) -> None:
-    tensor = np.array(
-        [[table.xx, table.xy, table.xz], [table.xy, table.yy, table.yz], [table.xz, table.yz, table.zz]]
-    )
+    tensor = np.array([[table.xx, table.xy, table.xz], [table.xy, table.yy, table.yz], [table.xz, table.yz, table.zz]])
     scale = float(abs(tensor).max())
     low, middle, high = (float(value) * scale for value in np.linalg.eigvalsh(tensor / scale))
     if not low > 0.0:
@@ -71,18 +69,14 @@ def _check_shaft(file: FileTable, shaft: ShaftTable, key: str) -> None:
     seen: set[str] = set()
     for disk in shaft.disks:
         if disk.name in seen:
-            raise ModelError(
-                f"{key}.disks", f"{show(disk.name)} is the name of two disks", "choose another name"
-            )
+            raise ModelError(f"{key}.disks", f"{show(disk.name)} is the name of two disks", "choose another name")
         seen.add(disk.name)
         _check_disk(disk, length(shaft), f"{key}.disks.{disk.name}")
 
 
 def _check_disk(disk: DiskTable, end: float, key: str) -> None:
     if disk.z > (1.0 + SAME) * end:
-        raise ModelError(
-            f"{key}.z", f"{disk.z:g} m lies off the shaft", f"give a place from 0 to {end:.9g} m"
-        )
+        raise ModelError(f"{key}.z", f"{disk.z:g} m lies off the shaft", f"give a place from 0 to {end:.9g} m")
     if disk.polar_inertia > (1.0 + ROUNDED) * 2.0 * disk.diametral_inertia:
         raise ModelError(
             f"{key}.polar_inertia",
@@ -92,13 +86,10 @@ def _check_disk(disk: DiskTable, end: float, key: str) -> None:
 
 
 def _check_meshes(file: FileTable, train: GearTrainTable, key: str) -> None:
-    """Refuse meshes within one shaft, and closed loops of meshes that leave no spin of their own."""
+    """Refuse meshes within one shaft or of other shafts, and closed loops of meshes that leave no spin of their own."""
     freely = "rz" not in file.dofs  # disks spin about their shafts, otherwise whole shafts turn
     wheels = [f"{s}.{d.name}" for s, shaft in train.shafts.items() for d in shaft.disks]
-    columns = {
-        wheel: k if freely else list(train.shafts).index(wheel.split(".")[0])
-        for k, wheel in enumerate(wheels)
-    }
+    columns = {wheel: k if freely else list(train.shafts).index(wheel.split(".")[0]) for k, wheel in enumerate(wheels)}
     levers: list[Real] = []
     for name, mesh in train.meshes.items():
         gears = [find_gear(train, text, f"{key}.{name}.between") for text in mesh.between]
@@ -119,3 +110,15 @@ def _check_meshes(file: FileTable, train: GearTrainTable, key: str) -> None:
                 f"{show(list(mesh.between))} closes a loop of meshes that has no spin of its own",
                 "leave one mesh of the loop out and add its stiffness to another",
             )
+        _check_base_radii(mesh.base_radii, abs(x2 - x1), f"{key}.{name}.base_radii")
+
+
+def _check_base_radii(radii: tuple[float, float], distance: float, key: str) -> None:
+    """The line of action along y touches both base circles of an external pair: their radii add up to |x2 - x1|."""
+    total = sum(radii)
+    if abs(total - distance) > ROUNDED * max(total, distance):
+        raise ModelError(
+            key,
+            f"the sum {total:.6g} m is not the distance {distance:.6g} m of the two shafts along x",
+            "give the base radii of both gears, or origins whose x differ by their sum (the line of action is along y)",
+        )
