@@ -34,7 +34,7 @@ def test_twins_agree_pointwise(both):
     """1e-6 at every line, of the value itself or of 1e-8 of the output's largest.
 
     The machine is nearly antisymmetric: at 20 Hz the tilt of the casing is 1e-13 of its largest, a small difference of
-    joint forces. Both twins know these with the absolute error K eps q, which no realisation in doubles avoids: with the
+    joint forces. Both twins know these with the absolute error K eps q, which no realisation in doubles avoids: with a
     transmission error as a proper input the state must hold the rigid spin d e itself.
     """
     _, time, frequency = both
