@@ -6,7 +6,7 @@ import scipy.linalg
 from scipy.optimize import brentq
 
 from gearpath.components import DOFS, Material, Section, Shaft
-from gearpath.components.beam import shape_functions, timoshenko_element
+from gearpath.components.beam import BEAMS, beam_element, cubic_shapes
 from gearpath.components.dofs import rigid_motion
 from gearpath.components.shaft_mesh import mesh_shaft
 
@@ -16,7 +16,7 @@ KAPPA = 0.886
 
 def element(length=0.2, diameter=0.05):
     section = Section(length, diameter)
-    return section, *timoshenko_element(section, STEEL, length, KAPPA)
+    return section, *beam_element("timoshenko", section, STEEL, length, KAPPA)
 
 
 @pytest.mark.parametrize("diameter", [0.005, 0.05, 0.2])
@@ -45,7 +45,7 @@ def test_rigid_motion_costs_nothing_and_carries_the_whole_inertia():
 
 def test_shape_functions_reproduce_the_end_motions():
     for xi, columns in ((0.0, slice(0, 6)), (1.0, slice(6, 12))):
-        N, _ = shape_functions(xi, 0.3, 0.7)
+        N, _ = cubic_shapes(xi, 0.3, 0.7)
         expected = np.zeros((6, 12))
         expected[:, columns] = np.eye(6)
         np.testing.assert_allclose(N, expected, atol=1e-15)
@@ -54,13 +54,13 @@ def test_shape_functions_reproduce_the_end_motions():
 def test_shape_function_slopes_are_derivatives():
     step = 1e-6
     for xi in (0.2, 0.7):
-        _, slope = shape_functions(xi, 0.3, 0.7)
-        ahead, behind = (shape_functions(xi + s, 0.3, 0.7)[0] for s in (step, -step))
+        _, slope = cubic_shapes(xi, 0.3, 0.7)
+        ahead, behind = (cubic_shapes(xi + s, 0.3, 0.7)[0] for s in (step, -step))
         np.testing.assert_allclose(slope, (ahead - behind) / (2 * step * 0.3), atol=1e-6)
 
 
-def free_free(shaft, plane, elements):
-    mesh = mesh_shaft(Shaft(STEEL, (0, 0, 0), (shaft,), KAPPA, (elements,)), [], plane)
+def free_free(shaft, plane, elements, beam="timoshenko"):
+    mesh = mesh_shaft(Shaft(STEEL, (0, 0, 0), (shaft,), KAPPA, (elements,), (), beam), [], plane)
     values = scipy.linalg.eigh(mesh.stiffness, mesh.mass, eigvals_only=True)
     return np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi)
 
@@ -162,3 +162,72 @@ def test_left_out_shear_coefficient_is_that_of_each_section():
     z = 0.04
     expected = force * (z**2 * (3 * 0.2 - z) / (6 * EI[0]) + shear[0] * z / 0.1)
     assert (mesh.motion(z) @ q)[DOFS.index("uy")] == pytest.approx(expected, rel=1e-10)
+
+
+@pytest.mark.parametrize("beam", BEAMS)
+def test_every_theory_moves_rigidly_at_no_cost_and_carries_its_mass(beam):
+    section = Section(0.2, 0.05)
+    K, M = beam_element(beam, section, STEEL, 0.2, KAPPA)
+    both = np.vstack([rigid_motion(np.array([0.0, 0.0, z])) for z in (-0.1, 0.1)])
+    np.testing.assert_allclose(K @ both, 0.0, atol=1e-9 * abs(K).max())
+    mass = STEEL.density * section.area * 0.2
+    rotary = 0.0 if beam == "euler" else STEEL.density * section.area_moment * 0.2
+    energy = both.T @ M @ both
+    np.testing.assert_allclose(np.diag(energy)[:3], mass, rtol=1e-12)
+    np.testing.assert_allclose(np.diag(energy)[3:5], rotary + mass * 0.2**2 / 12, rtol=1e-12)
+
+
+def tip(beam, elements, section):
+    """Tip deflection of a cantilever under a unit tip force, of so many elements."""
+    shaft = Shaft(STEEL, (0, 0, 0), (section,), KAPPA, (elements,), (), beam)
+    K = mesh_shaft(shaft, [], ("uy", "rx")).stiffness[2:, 2:]
+    load = np.zeros(len(K))
+    load[-2] = 1.0
+    return np.linalg.solve(K, load)[-2]
+
+
+def test_one_euler_element_is_exact_without_shear():
+    section = Section(0.2, 0.05)
+    assert tip("euler", 1, section) == pytest.approx(0.2**3 / (3 * 2.07e11 * section.area_moment), rel=1e-11)
+
+
+def test_one_mindlin_element_with_reduced_integration_has_its_known_deflection():
+    """L / (kappa G A) + L^3 / (4 E I): the shear exact, the bending of a linear rotation (Hughes 1987)."""
+    section, L = Section(0.2, 0.05), 0.2
+    expected = L / (KAPPA * STEEL.shear_modulus * section.area) + L**3 / (4 * 2.07e11 * section.area_moment)
+    assert tip("mindlin_reduced", 1, section) == pytest.approx(expected, rel=1e-11)
+
+
+@pytest.mark.parametrize("beam", ["mindlin_reduced", "mindlin_full"])
+def test_mindlin_deflection_converges_to_the_thick_beam_as_h_squared(beam):
+    section, L = Section(0.2, 0.05), 0.2
+    exact = L / (KAPPA * STEEL.shear_modulus * section.area) + L**3 / (3 * 2.07e11 * section.area_moment)
+    errors = np.array([abs(tip(beam, n, section) / exact - 1) for n in (32, 64, 128)])
+    orders = np.log2(errors[:-1] / errors[1:])
+    assert np.all((orders > 1.9) & (orders < 2.1))
+
+
+def test_full_integration_locks_where_reduced_integration_does_not():
+    slender = Section(0.2, 0.002)
+    exact = 0.2**3 / (3 * 2.07e11 * slender.area_moment)
+    assert tip("mindlin_full", 8, slender) < 0.02 * exact
+    assert tip("mindlin_reduced", 8, slender) == pytest.approx(exact, rel=0.01)
+
+
+def test_mindlin_frequencies_converge_to_the_exact_timoshenko_solution_and_euler_does_not():
+    section, length = Section(0.25, 0.05), 0.25
+    exact = exact_timoshenko_free_free(section, length, 3)
+    for beam in ("mindlin_reduced", "mindlin_full"):
+        errors = np.array([free_free(section, ("uy", "rx"), n, beam)[2:5] / exact - 1 for n in (32, 64, 128)])
+        orders = np.log2(abs(errors[:-1]) / abs(errors[1:]))
+        assert np.all((orders > 1.8) & (orders < 2.2))
+    euler = free_free(section, ("uy", "rx"), 128, "euler")[2:5] / exact - 1
+    assert np.all(euler > [0.05, 0.2, 0.3])
+
+
+def test_euler_free_free_frequencies_are_the_closed_form():
+    section, length = Section(0.5, 0.03), 0.5
+    beta_l = np.array([4.730040745, 7.853204624, 10.995607838])
+    stiffness = STEEL.youngs_modulus * section.area_moment / (STEEL.density * section.area)
+    exact = (beta_l / length) ** 2 * np.sqrt(stiffness) / (2 * np.pi)
+    np.testing.assert_allclose(free_free(section, ("uy", "rx"), 32, "euler")[2:5], exact, rtol=1e-5)

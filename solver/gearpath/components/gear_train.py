@@ -41,7 +41,7 @@ class Shaft:
     shear_coefficient: float | None  # None: Cowper's of each section
     elements: tuple[int, ...]  # elements of each span between stations; one number holds for every span
     disks: tuple[Disk, ...] = ()
-    beam: str = "timoshenko"
+    beam: str = "timoshenko"  # a key of beam.BEAMS
 
     @property
     def length(self) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..numerics.arrays import Real
-from .beam import shape_functions, shear_parameter, timoshenko_element
+from .beam import beam_element, beam_shapes
 from .dofs import DOFS, rigid_motion
 
 if TYPE_CHECKING:
@@ -49,8 +49,8 @@ class ShaftMesh:
             out[picked, first + np.arange(len(picked))] = 1.0
             return out
         section = section_at(self.shaft, (self.nodes[e] + self.nodes[e + 1]) / 2.0)
-        phi = shear_parameter(section, self.shaft.material, length, self.shaft.shear_coefficient_of(section))
-        N, _ = shape_functions(xi, length, phi)
+        kappa = self.shaft.shear_coefficient_of(section)
+        N, _ = beam_shapes(self.shaft.beam, xi, section, self.shaft.material, length, kappa)
         first = e * len(self.dofs)
         out[:, first : first + 2 * len(picked)] = N[:, np.concatenate([picked, picked + 6])]
         return out
@@ -104,7 +104,7 @@ def mesh_shaft(shaft: Shaft, bearings: Sequence[float], dofs: tuple[str, ...]) -
     for (start, end), count in zip(pairwise(stations), counts):  # the elements of a span are all alike
         section = section_at(shaft, (start + end) / 2.0)
         kappa = shaft.shear_coefficient_of(section)
-        element = timoshenko_element(section, shaft.material, (end - start) / count, kappa)
+        element = beam_element(shaft.beam, section, shaft.material, (end - start) / count, kappa)
         element_K, element_M = (matrix[chosen] for matrix in element)
         for e in range(first, first + count):
             block = slice(e * width, (e + 2) * width)

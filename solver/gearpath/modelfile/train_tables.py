@@ -4,6 +4,7 @@ from typing import Annotated, Literal, TypeVar
 
 from pydantic import BeforeValidator, Field
 
+from ..components.beam import BEAMS
 from .forms import Elements
 from .leaf import is_list, is_table
 from .numbers import Quantity, Row
@@ -68,7 +69,7 @@ class ShaftTable(Table):
     length: Annotated[float | None, _length("length")] = None
     diameter: Annotated[float | None, _length("diameter", 10.0)] = None
     sections: Annotated[Several[SectionTable], Field(description="Sections from the first end on")] = ()
-    beam: Annotated[str, Choice("beam theory", ("timoshenko",))] = "timoshenko"
+    beam: Annotated[str, Choice("beam theory", tuple(BEAMS))] = "timoshenko"
     shear_coefficient: Annotated[
         float | None, Quantity("shear coefficient (left out: Cowper's of each section)", above=0.0, at_most=1.0)
     ] = None
