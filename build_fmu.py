@@ -16,7 +16,11 @@ try:
 
     from gearpath import cli, console
 except ImportError as missing:
-    sys.exit(f'error: {missing}; install what is needed first: python -m pip install ".[all]"')
+    print(
+        f"error: {missing}; use the Python that Gearpath is installed in, see README.md (.venv/bin/python)",
+        file=sys.stderr,
+    )
+    sys.exit(2)
 
 
 def main() -> None:

@@ -72,7 +72,8 @@ def _bode(
     caption = (
         f"{name} per {f'unit of {load}' if load else 'unit of the input'}. Line: solver (mobility synthesis), "
         f"{'on a fine grid' if load else 'straight between its points'}; markers: steady state of the simulated FMU. "
-        f"Largest deviation of a marker, relative to the largest value of the solver there: {number(worst, 2)}."
+        f"Largest deviation of a marker, relative to the largest value of the solver there: {number(worst, 2)}. "
+        "It includes the images of the sampled input, which the validation accounts for."
     )
     words = f"Bode plot of {name}: {plural(len(found), 'simulated FMU')} over the solver's curve."
     return Figure(f"bode-{k}", caption, words, data, layout, heading=name)
