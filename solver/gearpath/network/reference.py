@@ -43,8 +43,9 @@ class Reference:
 def reference_solution(network: Network, omega: Real) -> Reference:
     """Solve the assembled machine at each angular frequency (rad/s), one pivoted factorisation a line."""
     parts = list(network.structures.values())
-    M, C = (scipy.linalg.block_diag(*blocks) for blocks in zip(*((s.mass, modal_damping_matrix(s)) for s in parts)))
-    K = _extended_blocks([_exactly_free(s) for s in parts])
+    M = scipy.linalg.block_diag(*(s.mass for s in parts))
+    K = _extended_blocks([_exactly_free(s, s.stiffness) for s in parts])
+    C = _extended_blocks([_exactly_free(s, modal_damping_matrix(s)) for s in parts])
     source, receiver = (
         np.vstack([getattr(joint, side) for joint in network.joints]) for side in ("source", "receiver")
     )
@@ -58,7 +59,7 @@ def reference_solution(network: Network, omega: Real) -> Reference:
     # the unknown forces are counted in units of a joint's stiffness times a unit motion: keeps the pivots sensible
     unit = max(float(abs(K_p).max()), 1.0)
     force, velocity = np.empty((n_p, len(omega)), complex), np.empty((n, len(omega)), complex)
-    input_power = np.empty(len(omega))
+    input_power, path_power = np.empty(len(omega)), np.empty((n_p, len(omega)))
     for k, w in enumerate(omega):
         Z = (K_p + 1j * w * C_p) / unit
         A = np.zeros((n + n_p, n + n_p), np.clongdouble)
@@ -72,21 +73,19 @@ def reference_solution(network: Network, omega: Real) -> Reference:
         else:
             b[:n] = w**2 * load.column
             b[n:] = -Z @ (B @ load.mesh_displacement)
-        x = _solve_refined(A, b)
-        force[:, k] = unit * x[n:]
-        velocity[:, k] = 1j * w * x[:n]
-        conjugate = load.column @ velocity[:, k]
-        input_power[k] = 0.5 * conjugate.real * (w**2 if load.is_transmission_error else 1.0)
+        x = _solve_refined(A, b)  # powers are small beside |v||F| at low frequency: they are taken before rounding
+        g, v = unit * x[n:], 1j * w * x[:n]
+        input_power[k] = 0.5 * (load.column @ v).real * (w**2 if load.is_transmission_error else 1.0)
         if load.mesh_displacement is not None:  # the physical motion, and the power of e against the joints
             own = 1j * w * load.mesh_displacement
-            velocity[:, k] += own
-            input_power[k] += 0.5 * np.real(np.vdot(B @ own, force[:, k]))
-    path_power = 0.5 * np.real(np.conj(receiver @ velocity) * force)
+            v = v + own
+            input_power[k] += 0.5 * np.real(np.vdot(B @ own, g))
+        force[:, k], velocity[:, k], path_power[:, k] = g, v, 0.5 * np.real(np.conj(receiver @ v) * g)
     carried = [joint.name in network.paths for joint in network.joints for _ in joint.dofs]
     return Reference(force, velocity, input_power, path_power, ratio(path_power[carried].sum(axis=0), input_power))
 
 
-def _solve_refined(A: ExtendedComplex, b: Complex) -> Complex:
+def _solve_refined(A: ExtendedComplex, b: Complex) -> ExtendedComplex:
     """Solve A x = b with iterative refinement, residuals in extended precision."""
     factors = scipy.linalg.lu_factor(A.astype(complex))
     x = np.zeros(b.shape, np.clongdouble)
@@ -95,16 +94,17 @@ def _solve_refined(A: ExtendedComplex, b: Complex) -> Complex:
         x += change
         if abs(change).max() <= np.finfo(float).eps * float(abs(x).max()):
             break
-    return x.astype(complex)
+    return x
 
 
-def _exactly_free(structure: Structure) -> Extended:
-    """Stiffness without the rounding that resists rigid-body motion, in extended precision.
+def _exactly_free(structure: Structure, matrix: Real) -> Extended:
+    """Stiffness or damping without the rounding that resists rigid-body motion, in extended precision.
 
     Element stiffnesses of 1e11 N/m leave a net force of 1e-5 N per m of rigid motion, which counts beside the
-    inertia forces at low frequency. K - M R R^T K and its transpose, R the mass-normalised rigid motions.
+    inertia forces at low frequency; damping likewise would dissipate. K - M R R^T K and its transpose, R the
+    mass-normalised rigid motions.
     """
-    M, K = structure.mass.astype(np.longdouble), structure.stiffness.astype(np.longdouble)
+    M, K = structure.mass.astype(np.longdouble), matrix.astype(np.longdouble)
     basis: list[Extended] = []
     for column in structure.rigid_modes.T.astype(np.longdouble):
         for _ in range(2):  # twice is enough to be orthogonal to rounding
