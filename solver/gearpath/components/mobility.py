@@ -8,8 +8,11 @@ from .modes import Modes, modes
 from .structure import Structure
 
 
-def modal_response(eigenvalues: Real, damping: Real, omega: Real) -> Complex:
-    """Mobility of single modes, i w / (w_r^2 - w^2 + i w X_r) (Eq. 7), shape (N, F); zero-frequency modes included."""
+def modal_response(eigenvalues: Real | Complex, damping: Real, omega: Real) -> Complex:
+    """Mobility of single modes, i w / (w_r^2 - w^2 + i w X_r) (Eq. 7), shape (N, F); zero-frequency modes included.
+
+    With a loss factor eta, w_r^2 is (1 + i eta) w_r^2.
+    """
     w = omega[None, :]
     return np.asarray(1j * w / (eigenvalues[:, None] - w**2 + 1j * w * damping[:, None]))
 
@@ -22,11 +25,11 @@ def mobility_modal(modes: Modes, rows: Real, modal_damping: float, omega: Real) 
 
 
 def mobility_direct(structure: Structure, rows: Real, omega: Real) -> Complex:
-    """Y = i w L (K - w^2 M + i w C)^-1 L^T (Eq. 6), shape (F, m, m) for rows (m, n)."""
+    """Y = i w L ((1 + i eta) K - w^2 M + i w C)^-1 L^T (Eq. 6), shape (F, m, m) for rows (m, n)."""
     C = modal_damping_matrix(structure)
     out = np.empty((len(omega), len(rows), len(rows)), complex)
     for k, w in enumerate(omega):
-        dynamic = structure.stiffness - w**2 * structure.mass + 1j * w * C
+        dynamic = (1.0 + 1j * structure.loss_factor) * structure.stiffness - w**2 * structure.mass + 1j * w * C
         out[k] = 1j * w * rows @ scipy.linalg.solve(dynamic, rows.T.astype(complex))
     return out
 

@@ -8,9 +8,9 @@ from ..numerics.arrays import Real
 
 @dataclass(frozen=True)
 class Structure:
-    """A linear structure in n generalised coordinates q: M q'' + C q' + K q = f.
+    """A linear structure in n generalised coordinates q: M q'' + C q' + (1 + i eta) K q = f.
 
-    C is modal: each elastic free-free mode has the damping ratio `modal_damping`.
+    C is modal: each elastic free-free mode has the damping ratio `modal_damping`. eta is `loss_factor`.
     """
 
     mass: Real  # (n, n), symmetric positive definite
@@ -19,6 +19,7 @@ class Structure:
     modal_damping: float  # damping ratio of every elastic mode
     ports: Mapping[str, Real]  # port name -> (6, n): motion ux uy uz rx ry rz of the port = rows @ q
     meshes: Mapping[str, "MeshMotion"] = field(default_factory=dict)
+    loss_factor: float = 0.0
 
     @property
     def size(self) -> int:

@@ -44,7 +44,7 @@ def export(system: System, path: Path, *, fmi: str = "2.0", kind: str = "native"
     }
     try:
         if kind == "native":
-            return export_native(assemble(system).modal(), path, **settings)  # type: ignore[arg-type]
+            return export_native(assemble(system).modal().viscous(), path, **settings)  # type: ignore[arg-type]
         return export_python(system, path, **settings)  # type: ignore[arg-type]
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror}); choose another place") from error

@@ -72,7 +72,7 @@ def export_python(
     """
     _check_arguments(model_identifier, start_time, stop_time, step_size)
     base = _base_fmu(model_identifier)
-    network = assemble(system).modal()
+    network = assemble(system).modal().viscous()
     check_network(network)
     variables = python_table(system, network, frequency)
     experiment = Experiment(float(start_time), float(stop_time), float(step_size))

@@ -40,7 +40,7 @@ class Machine:
     def __init__(self, system: System, frequency: float) -> None:
         self._start = system
         self._parameters = {parameter.name: parameter for parameter in design_parameters(system)}
-        self._solved: ModalNetwork = assemble(system).modal()
+        self._solved: ModalNetwork = assemble(system).modal().viscous()
         self._network = self._solved
         self._valid = Settings.of(self._solved)
         self._wanted = self._valid.copy()
@@ -101,7 +101,7 @@ class Machine:
         problems = self._wanted.take_back_joints(self._valid)
         if self._wanted.design != self._valid.design:
             try:
-                self._solved = assemble(redesign(self._start, self._wanted.design)).modal()
+                self._solved = assemble(redesign(self._start, self._wanted.design)).modal().viscous()
                 self._state = np.zeros(2 * len(self._solved.eigenvalues))
                 self._begun = False
             except _FAILURES as error:

@@ -105,7 +105,7 @@ def _moved_table(system: System, frequency: float) -> dict[str, Variable] | None
         for k, parameter in enumerate(design_parameters(system))
     }
     try:
-        table = variable_table(assemble(redesign(system, moved)).modal(), frequency)
+        table = variable_table(assemble(redesign(system, moved)).modal().viscous(), frequency)
     except (GearpathError, ValueError, ArithmeticError):
         return None
     return {variable.name: variable for variable in table}

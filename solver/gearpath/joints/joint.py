@@ -38,3 +38,4 @@ class Joint:
     damping: Matrix
     at: Vector | None = None
     scalar: bool = False  # given as one number (a mount's axial stiffness)
+    loss_factor: float = 0.0  # eta of (1 + i eta) K

@@ -94,4 +94,6 @@ def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
         ),
         excitation=network.excitation,
         paths=network.paths,
+        loss_factors={name: s.loss_factor for name, s in network.structures.items() if s.loss_factor},
+        loss_frequency=network.system.loss_frequency,
     )

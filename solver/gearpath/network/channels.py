@@ -29,6 +29,7 @@ def joint_rows(ports: Ports, name: str, joint: Joint) -> JointRows:
         np.array(joint.damping, float),
         joint.scalar,
         joint.between[1].is_ground,
+        joint.loss_factor,
     )
 
 

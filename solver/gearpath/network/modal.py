@@ -1,7 +1,7 @@
 """The network in modal coordinates: what the synthesis, the time twin and the FMUs are computed from."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from .records import JointRows, Load, Output
 class ModalNetwork:
     """All components in their own free-free modes, N in all, mass-normalised, and the joints between them.
 
-    Uncoupled: q'' + X q' + L q = f with L = diag(eigenvalues), X = diag(2 zeta sqrt(L)) (Eq. 11b, 11c).
+    Uncoupled: q'' + X q' + (1 + i eta) L q = f with L = diag(eigenvalues), X = diag(2 zeta sqrt(L)) (Eq. 11b, 11c).
     """
 
     name: str
@@ -25,6 +25,8 @@ class ModalNetwork:
     outputs: tuple[Output, ...]
     excitation: str  # the load that power ratios and frf outputs refer to
     paths: tuple[str, ...]  # joints that count as power flow paths (Network.paths)
+    loss_factors: Mapping[str, float] = field(default_factory=dict)  # component -> eta, where it is not 0
+    loss_frequency: float = 1000.0  # Hz, where loss factors of joints and their viscous equivalents agree
 
     @property
     def damping(self) -> Real:
@@ -33,6 +35,34 @@ class ModalNetwork:
         for name, ratio in self.modal_damping.items():
             zeta[self.components[name]] = ratio
         return 2.0 * zeta * np.sqrt(self.eigenvalues)
+
+    @property
+    def hysteresis(self) -> Real:
+        """eta L of every mode, (N,), (rad/s)^2: what the loss factors add to L as its imaginary part."""
+        eta = np.zeros_like(self.eigenvalues)
+        for name, factor in self.loss_factors.items():
+            eta[self.components[name]] = factor
+        return eta * self.eigenvalues
+
+    @property
+    def has_loss_factors(self) -> bool:
+        """Whether any component or joint has a loss factor, which has no causal form in time."""
+        return bool(self.loss_factors) or any(joint.loss_factor for joint in self.joints)
+
+    def viscous(self) -> "ModalNetwork":
+        """The network with viscous damping in place of loss factors: what can be simulated in time.
+
+        A mode gets zeta = eta / 2, which dissipates alike at its own frequency; a joint C + eta K / w, alike at
+        `loss_frequency`.
+        """
+        if not self.has_loss_factors:
+            return self
+        w = 2.0 * np.pi * self.loss_frequency
+        ratios = {name: zeta + self.loss_factors.get(name, 0.0) / 2.0 for name, zeta in self.modal_damping.items()}
+        joints = tuple(
+            replace(j, damping=j.damping + j.loss_factor / w * j.stiffness, loss_factor=0.0) for j in self.joints
+        )
+        return replace(self, modal_damping=ratios, joints=joints, loss_factors={})
 
     @property
     def relative(self) -> Real:
@@ -51,6 +81,10 @@ class ModalNetwork:
         for joint, rows in zip(self.joints, self.joint_slices().values()):
             K[rows, rows], C[rows, rows] = joint.stiffness, joint.damping
         return K, C
+
+    def joint_losses(self) -> Real:
+        """Loss factor of every interface row, (n_p,)."""
+        return np.concatenate([np.full(len(joint.dofs), joint.loss_factor) for joint in self.joints])
 
     def with_joint(self, name: str, stiffness: Real, damping: Real) -> "ModalNetwork":
         """The same network with one joint exchanged; the components stay solved."""

@@ -86,19 +86,24 @@ def power_flow(
         flow.velocity_source[:, part] = amplitude * (v[interface] + slip[interface])
         v, F = flow.velocity_receiver[:, part], flow.force[:, part]
         flow.path_power[:, part] = 0.5 * (v.real * F.real + v.imag * F.imag)
-        flow.dissipated_power[:, part] = amplitude**2 * _dissipation(network, elastic, slip)
+        flow.dissipated_power[:, part] = amplitude**2 * _dissipation(network, elastic, slip, w)
         progress(len(w))
     return flow
 
 
-def _dissipation(network: ModalNetwork, elastic: Complex, slip: Complex) -> Real:
+def _dissipation(network: ModalNetwork, elastic: Complex, slip: Complex, omega: Real) -> Real:
     """Power lost in every element, (e, F): 1/2 q'^H X q' of components, 1/2 dv^H C dv of joints.
 
-    `slip` is the relative velocity dv of all joints, stacked.
+    `slip` is the relative velocity dv of all joints, stacked. Loss factors add eta L / w to X and eta K / w to C.
     """
-    lost = 0.5 * network.damping[:, None] * (elastic.real**2 + elastic.imag**2)
+    damping = network.damping[:, None]
+    if network.loss_factors:
+        damping = damping + network.hysteresis[:, None] / omega
+    lost = 0.5 * damping * (elastic.real**2 + elastic.imag**2)
     rows = [lost[modes].sum(axis=0) for modes in network.components.values()]
     for joint, at in zip(network.joints, network.joint_slices().values()):
         drag = real_times_complex(joint.damping, slip[at])
+        if joint.loss_factor:
+            drag += real_times_complex(joint.stiffness, slip[at]) * (joint.loss_factor / omega)
         rows.append(0.5 * (slip[at].real * drag.real + slip[at].imag * drag.imag).sum(axis=0))
     return np.array(rows)

@@ -25,6 +25,7 @@ class JointRows:
     damping: Real  # (d, d), symmetric, positive semidefinite, N s/m ...
     scalar: bool = False  # whether the model file gives it as one number (a mount's axial stiffness)
     grounded: bool = False  # whether the receiver is the ground
+    loss_factor: float = 0.0  # eta of (1 + i eta) K
 
     @property
     def relative(self) -> Real:

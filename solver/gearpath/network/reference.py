@@ -6,6 +6,7 @@ joint forces g are solved together,
     [ K + i w C - w^2 M    B^T   ] [ u ]   [ f ]
     [ (K_p + i w C_p) B    -I    ] [ g ] = [ -(K_p + i w C_p) B d e ]
 
+(with loss factors (1 + i eta) K and (1 + i eta) K_p)
 so that joint forces keep their digits across stiff joints, and joint stiffness is never inverted. The solution is
 refined with residuals in extended precision (where the platform has it): free shafts at low frequency are badly
 conditioned in physical coordinates, and a reference must be better than what it judges.
@@ -45,6 +46,8 @@ def reference_solution(network: Network, omega: Real) -> Reference:
     parts = list(network.structures.values())
     M = scipy.linalg.block_diag(*(s.mass for s in parts))
     K = _extended_blocks([_exactly_free(s, s.stiffness) for s in parts])
+    H = _extended_blocks([s.loss_factor * _exactly_free(s, s.stiffness) for s in parts])
+    losses = np.concatenate([np.full(len(joint.dofs), joint.loss_factor) for joint in network.joints])
     C = _extended_blocks([_exactly_free(s, modal_damping_matrix(s)) for s in parts])
     source, receiver = (
         np.vstack([getattr(joint, side) for joint in network.joints]) for side in ("source", "receiver")
@@ -61,9 +64,9 @@ def reference_solution(network: Network, omega: Real) -> Reference:
     force, velocity = np.empty((n_p, len(omega)), complex), np.empty((n, len(omega)), complex)
     input_power, path_power = np.empty(len(omega)), np.empty((n_p, len(omega)))
     for k, w in enumerate(omega):
-        Z = (K_p + 1j * w * C_p) / unit
+        Z = ((1.0 + 1j * losses[:, None]) * K_p + 1j * w * C_p) / unit
         A = np.zeros((n + n_p, n + n_p), np.clongdouble)
-        A[:n, :n] = K + 1j * w * C - w**2 * M
+        A[:n, :n] = K + 1j * (H + w * C) - w**2 * M
         A[:n, n:] = unit * B.T
         A[n:, :n] = Z @ B
         A[n:, n:] = -np.eye(n_p)

@@ -1,6 +1,6 @@
 """The mobility synthesis: interface forces and motions of the coupled network, line by line in frequency.
 
-    (I + Z W) g = Z (B Y f_e - i w e),    W = B Y B^T,    Z = K/(i w) + C          (Eq. 3, without inverting K)
+    (I + Z W) g = Z (B Y f_e - i w e),    W = B Y B^T,    Z = (1 + i eta) K/(i w) + C   (Eq. 3, without inverting K)
     v = Y (f_e - B^T g)                                                            (Eq. 4)
 
 Y is never stored: the component mobilities are modal (Eq. 11), so W is one real product of the packed residues
@@ -9,7 +9,7 @@ P_pr P_qr with the modal responses of the chunk.
 At the free-free resonance of an undamped component Y is infinite although the coupled answer is not. Lines that close
 to one (`_RESONANT`) are solved in modal coordinates without eliminating the components:
 
-    [diag(L - w^2 + i w X) + P^T (K + i w C) P] q~ = f - P^T (K + i w C) P d e,    g = (K + i w C) P (q~ + d e)
+    [diag(L - w^2 + i w X) + P^T i w Z P] q~ = f - P^T i w Z P d e,    g = i w Z P (q~ + d e)
 
 with f = column of a force, w^2 column e of a transmission error, and the elastic velocity i w q~.
 """
@@ -68,6 +68,8 @@ class Synthesis:
         self._residues = [_Residues.of(self.P, block) for block in network.components.values()]
         K, C = network.interface_matrices()
         self._joints = np.vstack([C, K])
+        self._losses = network.joint_losses()
+        self._stiffness = network.eigenvalues + 1j * network.hysteresis if network.loss_factors else network.eigenvalues
 
     @property
     def bytes_per_line(self) -> int:
@@ -82,7 +84,7 @@ class Synthesis:
         """
         network, P = self.network, self.P
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            response = modal_response(network.eigenvalues, network.damping, omega)
+            response = modal_response(self._stiffness, network.damping, omega)
         # |i w / (w_r^2 - w^2 + i w X_r)| = 1 / (w * relative distance); NaN where both parts are 0
         resonant = np.flatnonzero(~(abs(response) * (omega * _RESONANT) < 1.0).all(axis=0))
         response[:, resonant] = 0.0  # replaced below
@@ -105,8 +107,8 @@ class Synthesis:
         """Solve one line in modal coordinates; writes `force` (n_p, m) and `elastic` (N, m)."""
         network, P = self.network, self.P
         C, K = np.split(self._joints, 2)
-        Z = K + 1j * w * C
-        dynamic = np.diag(network.eigenvalues - w**2 + 1j * w * network.damping) + P.T @ (Z @ P)
+        Z = (1.0 + 1j * self._losses[:, None]) * K + 1j * w * C
+        dynamic = np.diag(self._stiffness - w**2 + 1j * w * network.damping) + P.T @ (Z @ P)
         held = np.column_stack(  # d of each load; 0 for a force
             [np.zeros(len(dynamic)) if x.mesh_displacement is None else x.mesh_displacement for x in self.loads]
         )
@@ -126,10 +128,10 @@ class Synthesis:
         return W
 
     def _joint_force(self, motion: Complex, omega: Real) -> Complex:
-        """Z @ motion for Z = K/(i w) + C; motion (n_p, m, F)."""
+        """Z @ motion; motion (n_p, m, F)."""
         both = real_times_complex(self._joints, motion)
         viscous, elastic = both[: len(motion)], both[len(motion) :]
-        elastic *= -1j / omega
+        elastic *= (self._losses[:, None, None] - 1j) / omega if self._losses.any() else -1j / omega
         viscous += elastic
         return viscous
 

@@ -64,3 +64,4 @@ class System:
     excitation: MeshExcitation | PointExcitation
     actuators: Mapping[str, Actuator] = field(default_factory=dict)
     sensors: Mapping[str, Sensor] = field(default_factory=dict)
+    loss_frequency: float = 1000.0  # Hz, where the viscous equivalents of joints' loss factors dissipate alike

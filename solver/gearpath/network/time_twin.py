@@ -42,7 +42,11 @@ def state_scale(network: ModalNetwork) -> Real:
 def time_twin(
     network: ModalNetwork, outputs: Sequence[Output] | None = None, loads: Sequence[Load] | None = None
 ) -> TimeTwin:
-    """State equations for the given outputs and loads (default: all linear outputs, all loads)."""
+    """State equations for the given outputs and loads (default: all linear outputs, all loads).
+
+    Loss factors have no causal form in time: their viscous equivalents (`ModalNetwork.viscous`) take their place.
+    """
+    network = network.viscous()
     chosen = tuple(o for o in network.outputs if o.quantity != "power") if outputs is None else tuple(outputs)
     inputs = network.loads if loads is None else tuple(loads)
     L, X, w = network.eigenvalues, network.damping, state_scale(network)

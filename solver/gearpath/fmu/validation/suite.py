@@ -52,7 +52,7 @@ def validate(
     file is no FMU.
     """
     kind = kind_of(path)
-    network = assemble(system).modal()
+    network = assemble(system).modal().viscous()
     limits = Limits()
     message("standard: fmpy's validator")
     checks = [standard_check(path)]
