@@ -16,11 +16,13 @@ from .errors import AccuracyError, GearpathError, InputError, MissingExtraError,
 if TYPE_CHECKING:
     from .api import (
         Model,
+        expected_power,
         export_fmu,
         frequency_response,
         load,
         natural_frequencies,
         power_flow,
+        power_matrices,
         state_space,
         validate_fmu,
     )
@@ -33,11 +35,13 @@ __all__ = [
     "Model",
     "ModelError",
     "__version__",
+    "expected_power",
     "export_fmu",
     "frequency_response",
     "load",
     "natural_frequencies",
     "power_flow",
+    "power_matrices",
     "state_space",
     "validate_fmu",
 ]

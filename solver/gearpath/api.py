@@ -24,12 +24,14 @@ if TYPE_CHECKING:
 __all__ = [
     "Model",
     "amplitude",
+    "expected_power",
     "export_fmu",
     "frequency_response",
     "load",
     "modal_network",
     "natural_frequencies",
     "power_flow",
+    "power_matrices",
     "state_space",
     "validate_fmu",
 ]
@@ -79,6 +81,45 @@ def frequency_response(
 
     f = model.frequencies() if frequencies_hz is None else frequencies_hz
     return labelled_response(modal_network(model), f, outputs, inputs)
+
+
+def expected_power(
+    model: Model,
+    inputs: str | Iterable[str],
+    spectrum: ArrayLike,
+    frequencies_hz: ArrayLike | None = None,
+    *,
+    progress: Progress = lambda _: None,
+) -> xr.Dataset:
+    """Expected powers of several excitations at once, correlated or not (Eq. 5 with Q matrices, E[P] = tr(Q S)).
+
+    `inputs` are n input names (mesh.transmission_error, mesh.force, actuators.NAME); `spectrum` is their
+    cross-spectral matrix S = E[F F^H] of peak phasors in SI units of the inputs (for one-sided mean-square densities G
+    give S = 2 G and read powers per Hz): (n, n) or (lines, n, n), Hermitian and positive semidefinite, or (n,) or
+    (lines, n) for uncorrelated inputs. Returns `input_power`, `transmitted_power`, `alpha`, `alpha_force`,
+    `alpha_moment`, `path_alpha`, `dissipated_power`, named as in `power_flow`. Raises InputError for what does not fit.
+    """
+    from .results.expected import labelled_expected_power
+
+    f = model.frequencies() if frequencies_hz is None else frequencies_hz
+    return labelled_expected_power(modal_network(model), f, inputs, spectrum, progress)
+
+
+def power_matrices(
+    model: Model,
+    frequencies_hz: ArrayLike | None = None,
+    inputs: str | Iterable[str] | None = None,
+    *,
+    progress: Progress = lambda _: None,
+) -> xr.Dataset:
+    """Hermitian power matrices Q of Eq. 5b and 5c: P = F^H Q F of the peak phasors F of all chosen inputs.
+
+    `input_power` over (frequency, input, input_2), `path_power` also over `path`, `dissipated_power` over `element`.
+    """
+    from .results.expected import labelled_power_matrices
+
+    f = model.frequencies() if frequencies_hz is None else frequencies_hz
+    return labelled_power_matrices(modal_network(model), f, inputs, progress)
 
 
 def state_space(model: Model) -> control.StateSpace:

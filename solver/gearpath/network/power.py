@@ -46,6 +46,28 @@ def is_moment_path(path: str) -> bool:
     return is_rotation(path.rsplit(".", 1)[1])
 
 
+@dataclass(frozen=True)
+class PathRows:
+    """Where the power flow paths stand in the interface."""
+
+    names: tuple[str, ...]  # joint and degree of freedom
+    interface: list[int]  # their places among the stacked joint degrees of freedom
+    receiver: Real  # (p, N): motion of the receivers
+    elements: tuple[str, ...]  # what dissipates: components, then joints
+
+
+def path_rows(network: ModalNetwork) -> PathRows:
+    """The power flow paths of a network, and its elements."""
+    slices = network.joint_slices()
+    joints = [joint for joint in network.joints if joint.name in network.paths]
+    return PathRows(
+        names=tuple(f"{joint.name}.{dof}" for joint in joints for dof in joint.dofs),
+        interface=[i for joint in joints for i in range(slices[joint.name].start, slices[joint.name].stop)],
+        receiver=np.vstack([np.zeros((0, len(network.eigenvalues))), *(joint.receiver for joint in joints)]),
+        elements=(*network.components, *(joint.name for joint in network.joints)),
+    )
+
+
 def power_flow(
     network: ModalNetwork,
     omega: Real,
@@ -58,32 +80,27 @@ def power_flow(
     """
     load = next(item for item in network.loads if item.name == network.excitation)
     synthesis = Synthesis(network, [load])
-    slices = network.joint_slices()
-    joints = [joint for joint in network.joints if joint.name in network.paths]
-    names = tuple(f"{joint.name}.{dof}" for joint in joints for dof in joint.dofs)
-    interface = [i for joint in joints for i in range(slices[joint.name].start, slices[joint.name].stop)]
-    receiver = np.vstack([joint.receiver for joint in network.joints])
-    elements = (*network.components, *(joint.name for joint in network.joints))
-    lines, paths = len(omega), len(names)
+    rows = path_rows(network)
+    lines, paths = len(omega), len(rows.names)
     flow = PowerFlow(
-        paths=names,
-        elements=elements,
+        paths=rows.names,
+        elements=rows.elements,
         input_power=np.empty(lines),
         path_power=np.empty((paths, lines)),
         force=np.empty((paths, lines), complex),
         velocity_source=np.empty((paths, lines), complex),
         velocity_receiver=np.empty((paths, lines), complex),
-        dissipated_power=np.empty((len(elements), lines)),
+        dissipated_power=np.empty((len(rows.elements), lines)),
     )
     for part in chunks(lines, synthesis.bytes_per_line):
         w = omega[part]
         solved = synthesis.solve(w)
         g, elastic, velocity = solved.force[:, 0], solved.elastic[:, 0], solved.velocity[:, 0]
         flow.input_power[part] = amplitude**2 * load_power(network, load, solved, 0, w)
-        flow.force[:, part] = amplitude * g[interface]
-        v, slip = real_times_complex(receiver, velocity), real_times_complex(synthesis.P, velocity)
-        flow.velocity_receiver[:, part] = amplitude * v[interface]
-        flow.velocity_source[:, part] = amplitude * (v[interface] + slip[interface])
+        flow.force[:, part] = amplitude * g[rows.interface]
+        v, slip = real_times_complex(rows.receiver, velocity), real_times_complex(synthesis.P, velocity)
+        flow.velocity_receiver[:, part] = amplitude * v
+        flow.velocity_source[:, part] = amplitude * (v + slip[rows.interface])
         v, F = flow.velocity_receiver[:, part], flow.force[:, part]
         flow.path_power[:, part] = 0.5 * (v.real * F.real + v.imag * F.imag)
         flow.dissipated_power[:, part] = amplitude**2 * _dissipation(network, elastic, slip, w)
@@ -96,14 +113,20 @@ def _dissipation(network: ModalNetwork, elastic: Complex, slip: Complex, omega: 
 
     `slip` is the relative velocity dv of all joints, stacked. Loss factors add eta L / w to X and eta K / w to C.
     """
+    damping, joints = element_damping(network, omega)
+    lost = 0.5 * damping * (elastic.real**2 + elastic.imag**2)
+    rows = [lost[modes].sum(axis=0) for modes in network.components.values()]
+    for at, (C, K_lost) in zip(network.joint_slices().values(), joints):
+        drag = real_times_complex(C, slip[at])
+        if K_lost.any():
+            drag += real_times_complex(K_lost, slip[at]) / omega
+        rows.append(0.5 * (slip[at].real * drag.real + slip[at].imag * drag.imag).sum(axis=0))
+    return np.array(rows)
+
+
+def element_damping(network: ModalNetwork, omega: Real) -> tuple[Real, list[tuple[Real, Real]]]:
+    """What dissipates: X + eta L / w of the modes, (N, F) or (N, 1), and C and eta K of every joint (C + eta K / w)."""
     damping = network.damping[:, None]
     if network.loss_factors:
         damping = damping + network.hysteresis[:, None] / omega
-    lost = 0.5 * damping * (elastic.real**2 + elastic.imag**2)
-    rows = [lost[modes].sum(axis=0) for modes in network.components.values()]
-    for joint, at in zip(network.joints, network.joint_slices().values()):
-        drag = real_times_complex(joint.damping, slip[at])
-        if joint.loss_factor:
-            drag += real_times_complex(joint.stiffness, slip[at]) * (joint.loss_factor / omega)
-        rows.append(0.5 * (slip[at].real * drag.real + slip[at].imag * drag.imag).sum(axis=0))
-    return np.array(rows)
+    return damping, [(joint.damping, joint.loss_factor * joint.stiffness) for joint in network.joints]
