@@ -26,12 +26,12 @@ class Port:
 
 @dataclass(frozen=True)
 class Joint:
-    """Bearing or mount between two ports; matrices in SI units on `dofs`, which may be singular.
+    """Bearing, mount or bolted joint between two ports; matrices in SI units on `dofs`, which may be singular.
 
     `at` is the place on the rigid body; None where the other end is a shaft station, which then gives it.
     """
 
-    kind: str  # "bearing" | "mount"
+    kind: str  # "bearing" | "mount" | "beam_joint"
     between: tuple[Port, Port]  # source, receiver: the joint's force acts on the receiver
     dofs: tuple[str, ...]
     stiffness: Matrix
@@ -39,3 +39,4 @@ class Joint:
     at: Vector | None = None
     scalar: bool = False  # given as one number (a mount's axial stiffness)
     loss_factor: float = 0.0  # eta of (1 + i eta) K
+    offset: Vector | None = None  # from the source's port to the receiver's, along which its motion is carried rigidly

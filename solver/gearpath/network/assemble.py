@@ -15,6 +15,8 @@ from .ports import Ports
 from .records import JointRows, Load, Output
 from .system import System
 
+_PATHS = ("bearing", "beam_joint")
+
 
 @dataclass(frozen=True)
 class Network:
@@ -31,12 +33,12 @@ class Network:
 
     @property
     def paths(self) -> tuple[str, ...]:
-        """The joints that count as power flow paths: the bearings, of bearings in series the last one.
+        """The joints that count as power flow paths: bearings and bolted joints, of those in series the last one.
 
         A bearing into a component that is itself the first of `between` of another bearing (shaft to quill, quill to
         casing) is not counted: its power is counted where it goes on. Nothing goes on into the ground.
         """
-        bearings = {name: joint for name, joint in self.system.joints.items() if joint.kind == "bearing"}
+        bearings = {name: joint for name, joint in self.system.joints.items() if joint.kind in _PATHS}
 
         def goes_on(name: str) -> bool:
             receiver = bearings[name].between[1].component

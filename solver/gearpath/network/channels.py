@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..components import DOFS
-from ..components.dofs import force_unit, motion_unit
+from ..components.dofs import force_unit, motion_unit, rigid_motion
 from ..joints import Joint
-from .ports import Ports, joint_place
+from .ports import Ports, port_place
 from .records import JointRows, Load, Output
 from .system import MeshExcitation, System
 
@@ -17,8 +17,10 @@ _ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
 
 def joint_rows(ports: Ports, name: str, joint: Joint) -> JointRows:
     picked = [DOFS.index(dof) for dof in joint.dofs]
-    place = joint_place(ports.system, joint)
-    source, receiver = (ports.motion(port, place)[picked] for port in joint.between)
+    source, receiver = (ports.motion(port, port_place(ports.system, joint, port)) for port in joint.between)
+    if joint.offset is not None:
+        source = rigid_motion(np.array(joint.offset)) @ source
+    source, receiver = source[picked], receiver[picked]
     return JointRows(
         name,
         joint.kind,

@@ -54,7 +54,7 @@ class Ports:
 
         for joint in system.joints.values():
             for port in joint.between:
-                ask(port, joint_place(system, joint), stations)
+                ask(port, port_place(system, joint, port), stations)
         others: list[Actuator | Sensor] = [*system.actuators.values(), *system.sensors.values()]
         for item in others:
             ask(item.port, item.at, probes)
@@ -98,12 +98,26 @@ def shaft_point(train: GearTrain, port: Port) -> ShaftPoint:
 
 
 def joint_place(system: System, joint: Joint) -> Vector | None:
-    """Where a joint is: its `at`, else the position of the shaft station at one of its ends."""
+    """Where a joint meets its receiver: its `at`, else the position of the shaft station at one of its ends."""
     if joint.at is not None:
         return joint.at
     for port in joint.between:
         component = None if port.is_ground else system.components[port.component]
         if isinstance(component, GearTrain):
             point = shaft_point(component, port)
-            return component.shafts[point.shaft].position(point.z)
+            place = component.shafts[point.shaft].position(point.z)
+            return _moved(place, joint.offset, 1.0) if port is joint.between[0] else place
     return None
+
+
+def port_place(system: System, joint: Joint, port: Port) -> Vector | None:
+    """Where a joint meets one of its ports; the source's end of a beam joint lies `offset` before the receiver's."""
+    place = joint_place(system, joint)
+    return _moved(place, joint.offset, -1.0) if port is joint.between[0] else place
+
+
+def _moved(place: Vector | None, offset: Vector | None, factor: float) -> Vector | None:
+    if place is None or offset is None:
+        return place
+    x, y, z = (a + factor * b for a, b in zip(place, offset))
+    return (x, y, z)
