@@ -1,5 +1,7 @@
 """Machines for the tests, built from the dataclasses directly: the default gearbox and random gearboxes."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from gearpath.components import Disk, GearTrain, Material, Mesh, RigidBody, Section, Shaft
@@ -73,10 +75,13 @@ def random_matrix(rng, dofs, rank, size, lever):
     return size * factor @ factor.T / max(rank, 1)
 
 
-def random_gearbox(seed: int, bearings: int) -> System:
-    """1 to 3 shafts with disks and meshes, bearings of any rank, a rigid casing on damped mounts."""
+def random_gearbox(seed: int, bearings: int, helical: bool = False) -> System:
+    """1 to 3 shafts with disks and meshes, bearings of any rank, a rigid casing on damped mounts.
+
+    helical: axes anywhere across z, pressure and helix angles, tapered shafts, on at least all but rz.
+    """
     rng = np.random.default_rng(seed)
-    dofs = _DOF_SETS[rng.integers(len(_DOF_SETS))]
+    dofs = _DOF_SETS[rng.integers(3 if helical else 0, len(_DOF_SETS))]
     count = int(rng.integers(1, 4))
     shafts, meshes = {}, {}
     for s in range(count):
@@ -94,6 +99,8 @@ def random_gearbox(seed: int, bearings: int) -> System:
     for s in range(count - 1):
         pair = ((f"shaft_{s}", "gear_0"), (f"shaft_{s + 1}", "gear_0"))
         meshes[f"mesh_{s}"] = Mesh(pair, 10 ** rng.uniform(7, 9), tuple(rng.uniform(0.03, 0.06, 2).tolist()))
+    if helical:
+        shafts, meshes = _in_space(rng, shafts, meshes)
     train = GearTrain(shafts, meshes, 10 ** rng.uniform(-3, -1.5))
     joints = {}
     for k in range(bearings):
@@ -129,6 +136,30 @@ def random_gearbox(seed: int, bearings: int) -> System:
         else PointExcitation(Port("train", "shaft_0", 0.4 * shafts["shaft_0"].length), "uy")
     )
     return System(f"random_{seed}", dofs, {"train": train, "casing": casing}, joints, excitation)
+
+
+def _in_space(rng, shafts, meshes):
+    """The gears of each mesh in one plane, their axes a = (r1 + r2) / cos(alpha) apart in any direction."""
+    tapered = {}
+    for name, shaft in shafts.items():
+        first, second = shaft.sections
+        cone = replace(second, outer_end=second.outer * float(rng.uniform(0.5, 1.5)), inner_end=0.0)
+        tapered[name] = replace(shaft, sections=(first, cone))
+    for name, mesh in meshes.items():
+        pressure, helix, direction = rng.uniform([0.0, -0.6, -np.pi], [0.6, 0.6, np.pi]).tolist()
+        meshes[name] = replace(
+            mesh,
+            pressure_angle=pressure,
+            helix_angle=helix,
+            driving_torque=str(rng.choice(["", "+z", "-z"])),
+            contact_offset=float(rng.uniform(-0.02, 0.02)),
+        )
+        (one, gear), (other, wheel) = mesh.between
+        x, y, z = tapered[one].position(tapered[one].disk(gear).z)
+        apart = sum(mesh.base_radii) / np.cos(pressure)
+        place = (x + apart * np.cos(direction), y + apart * np.sin(direction), z - tapered[other].disk(wheel).z)
+        tapered[other] = replace(tapered[other], origin=tuple(map(float, place)))
+    return tapered, meshes
 
 
 def _disk(rng):

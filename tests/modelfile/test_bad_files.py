@@ -10,14 +10,30 @@ from gearpath.modelfile import load
 
 HERE = Path(__file__).parent
 BASE = (HERE / "base.toml").read_text(encoding="utf-8")
+STRUCTURES = (HERE / "base_structures.toml").read_text(encoding="utf-8")
 CASES = tomllib.loads((HERE / "bad_files.toml").read_text(encoding="utf-8"))["case"]
+STRUCTURE_CASES = tomllib.loads((HERE / "bad_structures.toml").read_text(encoding="utf-8"))["case"]
 
 
 @pytest.mark.parametrize("case", CASES, ids=[case["message"].split(": ")[0] for case in CASES])
 def test_bad_file(case, tmp_path):
-    assert BASE.count(case["old"]) == 1
-    path = tmp_path / "bad.toml"
-    path.write_text(BASE.replace(case["old"], case["new"]), encoding="utf-8")
+    check(BASE, case, tmp_path / "bad.toml")
+
+
+@pytest.mark.parametrize("case", STRUCTURE_CASES, ids=[case["message"].split(": ")[0] for case in STRUCTURE_CASES])
+def test_bad_file_with_structures(case, tmp_path):
+    check(STRUCTURES, case, tmp_path / "bad.toml")
+
+
+def test_base_of_structures_is_good(tmp_path):
+    path = tmp_path / "good.toml"
+    path.write_text(STRUCTURES, encoding="utf-8")
+    assert set(load(path).system.components) == {"post", "lid"}
+
+
+def check(base, case, path):
+    assert base.count(case["old"]) == 1
+    path.write_text(base.replace(case["old"], case["new"]), encoding="utf-8")
     with pytest.raises(ModelError) as caught:
         load(path)
     error = caught.value

@@ -8,13 +8,14 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from gearpath.modelfile.schema import json_schema, schema_text
+from gearpath.modelfile.structure_tables import PlateShape
 from gearpath.modelfile.table import Table
 from gearpath.modelfile.tables import ActuatorTable, FileTable
 
 ROOT = Path(__file__).parents[2]
 HERE = Path(__file__).parent
 SCHEMA = json_schema()
-TABLES = {table.__name__: table for table in (*Table.__subclasses__(), *ActuatorTable.__subclasses__())}
+TABLES = {table.__name__: table for table in (*Table.__subclasses__(), *ActuatorTable.__subclasses__(), *PlateShape.__subclasses__())}
 VALIDATOR = Draft202012Validator(SCHEMA)
 BASE = (HERE / "base.toml").read_text(encoding="utf-8")
 
@@ -72,7 +73,16 @@ def test_every_number_has_a_unit():
         else:
             assert f"in {unit}" in entry["description"]
     assert bare == {
+        ("BeamJointTable", "loss_factor"),
+        ("BeamJointTable", "shear_coefficient"),
+        ("BeamTable", "shear_coefficient"),
+        ("FrameTable", "loss_factor"),
+        ("FrameTable", "modal_damping"),
         ("GearTrainTable", "modal_damping"),
+        ("MatrixJointTable", "loss_factor"),
+        *((table, key) for table in ("PlateShape", "PlateTable") for key in ("axis_1", "axis_2", "shear_coefficient")),
+        ("PlateTable", "loss_factor"),
+        ("PlateTable", "modal_damping"),
         ("MaterialTable", "poisson_ratio"),
         ("ShaftTable", "shear_coefficient"),
     }
@@ -94,7 +104,7 @@ def test_defaults_are_valid():
         ("mass = 12.0", 'mass = "12 kg"'),
         ("mass = 12.0", "mass = 0"),
         ("youngs_modulus = 2.07e11", "youngs_modulus = 207"),
-        ('kind = "gear_train"', 'kind = "plate"'),
+        ('kind = "gear_train"', 'kind = "shell"'),
         ("[joints.front]", "[joints.1st]"),
         ("length = 0.2\n", ""),
         ("length = 0.2\n", "length = 0.2\nsections = [{ length = 0.2, outer = 0.03 }]\n"),

@@ -14,6 +14,7 @@ from gearpath.network.reference import reference_solution
 from gearpath.network.synthesis import Synthesis
 
 machines = st.builds(random_gearbox, st.integers(0, 2**32 - 1), st.integers(1, 8))
+helical_machines = st.builds(random_gearbox, st.integers(0, 2**32 - 1), st.integers(1, 8), st.just(True))
 LINES = 2 * np.pi * np.geomspace(20.0, 5000.0, 7)
 
 
@@ -42,9 +43,7 @@ def rounding(network, load, force):
     return np.finfo(float).eps * bound
 
 
-@settings(max_examples=200, deadline=None)
-@given(machines)
-def test_synthesis_equals_the_unsynthesised_solution(system):
+def check_synthesis_against_reference(system):
     network = assemble(system)
     modal = network.modal()
     load = next(item for item in modal.loads if item.name == modal.excitation)
@@ -62,9 +61,7 @@ def test_synthesis_equals_the_unsynthesised_solution(system):
     assert np.all(abs(flow.share() - reference.alpha) <= (1e-8 + 1e3 * relative) * gross)
 
 
-@settings(max_examples=200, deadline=None)
-@given(machines)
-def test_power_balance_and_passivity(system):
+def check_balance_and_passivity(system):
     flow = power_flow(assemble(system).modal(), LINES)
     np.testing.assert_allclose(flow.dissipated_power.sum(axis=0), flow.input_power, rtol=1e-8)
     assert np.all(flow.dissipated_power >= 0.0)
@@ -72,9 +69,7 @@ def test_power_balance_and_passivity(system):
     assert np.all(flow.share() < 1.0 + 1e-10)
 
 
-@settings(max_examples=100, deadline=None)
-@given(machines)
-def test_reciprocity_of_the_coupled_machine(system):
+def check_reciprocity(system):
     """Velocity at j per unit force at i = velocity at i per unit force at j, across the joints."""
     modal = assemble(system).modal()
     rng = np.random.default_rng(0)
@@ -84,3 +79,28 @@ def test_reciprocity_of_the_coupled_machine(system):
     there, back = columns[1] @ velocity[:, 0], columns[0] @ velocity[:, 1]
     summed = np.maximum(abs(columns[1]) @ abs(velocity[:, 0]), abs(columns[0]) @ abs(velocity[:, 1]))
     assert np.all(abs(there - back) <= 1e-10 * summed)
+
+
+@settings(max_examples=200, deadline=None)
+@given(machines)
+def test_synthesis_equals_the_unsynthesised_solution(system):
+    check_synthesis_against_reference(system)
+
+
+@settings(max_examples=200, deadline=None)
+@given(machines)
+def test_power_balance_and_passivity(system):
+    check_balance_and_passivity(system)
+
+
+@settings(max_examples=100, deadline=None)
+@given(machines)
+def test_reciprocity_of_the_coupled_machine(system):
+    check_reciprocity(system)
+
+
+@settings(max_examples=40, deadline=None)
+@given(helical_machines)
+def test_all_of_it_holds_for_helical_machines_in_space(system):
+    for check in (check_synthesis_against_reference, check_balance_and_passivity, check_reciprocity):
+        check(system)

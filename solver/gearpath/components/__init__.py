@@ -1,22 +1,34 @@
-"""Structures known by what they do at named ports: shaft trains and rigid bodies."""
+"""Structures known by what they do at named ports: shaft trains, rigid bodies, plates and frames."""
 
+from .cross_section import BarSection
 from .dofs import DOFS, ROTATIONS, TRANSLATIONS
-from .gear_train import Disk, GearTrain, Mesh, Shaft, ShaftPoint
+from .footprint import Footprint
+from .frame import Frame
+from .frame_beam import FrameBeam
+from .gear_mesh import Mesh
+from .gear_train import GearTrain
 from .material import Material
 from .modes import Modes, modes
+from .plate import Plate
 from .rigid_body import RigidBody
 from .section import Section
+from .shaft import Disk, Shaft, ShaftPoint
 from .structure import Structure
 
 __all__ = [
     "DOFS",
     "ROTATIONS",
     "TRANSLATIONS",
+    "BarSection",
     "Disk",
+    "Footprint",
+    "Frame",
+    "FrameBeam",
     "GearTrain",
     "Material",
     "Mesh",
     "Modes",
+    "Plate",
     "RigidBody",
     "Section",
     "Shaft",

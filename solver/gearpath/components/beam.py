@@ -16,18 +16,19 @@ shape functions, in what they count, and in where the shear energy is sampled:
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from ..numerics.arrays import Real
+from .cross_section import CrossSection
 from .material import Material
-from .section import Section
 
 # u_x and u_y bend with theta_y = +u_x' and theta_x = -u_y'; columns of the 12 element coordinates of each plane
-_PLANE_X, _PLANE_Y = ([0, 4, 6, 10], 1.0), ([1, 3, 7, 9], -1.0)
+PLANES = ([0, 4, 6, 10], 1.0), ([1, 3, 7, 9], -1.0)
 
 
-def shear_parameter(section: Section, material: Material, length: float, shear_coefficient: float) -> float:
+def shear_parameter(section: CrossSection, material: Material, length: float, shear_coefficient: float) -> float:
     """phi = 12 E I / (kappa G A l^2) (beta of Eq. 21)."""
     bending = material.youngs_modulus * section.area_moment
     shear = shear_coefficient * material.shear_modulus * section.area
@@ -65,7 +66,7 @@ def cubic_shapes(xi: float, length: float, phi: float) -> tuple[Real, Real]:
         [(12 * xi - 6) / l**2, (6 * xi - 4 - phi) / l, (6 - 12 * xi) / l**2, (6 * xi - 2 + phi) / l]
     )
     N, dN = np.zeros((6, 12)), np.zeros((6, 12))
-    for (columns, sign), u, theta in ((_PLANE_X, 0, 4), (_PLANE_Y, 1, 3)):
+    for (columns, sign), u, theta in zip(PLANES, (0, 1), (4, 3)):
         turn = np.array([1.0, sign, 1.0, sign])  # element rotations as slopes of the deflection
         N[u, columns], dN[u, columns] = turn * deflection, turn * deflection_slope
         N[theta, columns], dN[theta, columns] = sign * turn * rotation, sign * turn * rotation_slope
@@ -100,7 +101,7 @@ BEAMS = {
 
 
 def beam_shapes(
-    beam: str, xi: float, section: Section, material: Material, length: float, shear_coefficient: float
+    beam: str, xi: float, section: CrossSection, material: Material, length: float, shear_coefficient: float
 ) -> tuple[Real, Real]:
     """Shape functions (6 x 12) of a theory at xi = z/l, and their z-derivative."""
     theory = BEAMS[beam]
@@ -109,7 +110,7 @@ def beam_shapes(
 
 
 def beam_element(
-    beam: str, section: Section, material: Material, length: float, shear_coefficient: float
+    beam: str, section: CrossSection, material: Material, length: float, shear_coefficient: float
 ) -> tuple[Real, Real]:
     """Stiffness and consistent mass (12 x 12 each) of one element of the given length (m); `beam` is a key of BEAMS.
 
@@ -122,18 +123,19 @@ def beam_element(
     rotary = area_moment if theory.rotary else 0.0
     inertia = material.density * np.array([A, A, A, rotary, rotary, 2.0 * area_moment])
     K, M = np.zeros((12, 12)), np.zeros((12, 12))
-    for xi, weight in _gauss(theory.points):
+    for xi, weight in gauss(theory.points):
         N, dN = beam_shapes(beam, xi, section, material, length, shear_coefficient)
         K += weight * length * dN.T @ (rigidity[:, None] * dN)
         M += weight * length * N.T @ (inertia[:, None] * N)
-    for xi, weight in _gauss(theory.shear_points):
+    for xi, weight in gauss(theory.shear_points):
         N, dN = beam_shapes(beam, xi, section, material, length, shear_coefficient)
         gamma = np.array([dN[0] - N[4], dN[1] + N[3]])
         K += weight * length * shear * gamma.T @ gamma
     return (K + K.T) / 2.0, (M + M.T) / 2.0
 
 
-def _gauss(count: int) -> list[tuple[float, float]]:
+@lru_cache
+def gauss(count: int) -> tuple[tuple[float, float], ...]:
     """Gauss-Legendre points and weights on [0, 1]."""
     points, weights = np.polynomial.legendre.leggauss(count)
-    return [((1.0 + float(x)) / 2.0, float(w) / 2.0) for x, w in zip(points, weights)]
+    return tuple(((1.0 + float(x)) / 2.0, float(w) / 2.0) for x, w in zip(points, weights))

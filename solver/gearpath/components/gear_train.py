@@ -8,76 +8,10 @@ import scipy.linalg
 
 from ..numerics.arrays import Real
 from .dofs import DOFS
-from .material import Material
-from .section import Section
+from .gear_mesh import Mesh
+from .shaft import Shaft, ShaftPoint
 from .shaft_mesh import ShaftMesh, mesh_shaft
 from .structure import MeshMotion, Structure
-
-Vector = tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class Disk:
-    """A rigid gear body on a shaft: z from the shaft's first end (m), mass (kg), inertias (kg m^2)."""
-
-    name: str
-    z: float
-    mass: float
-    diametral_inertia: float
-    polar_inertia: float
-
-    def inertia(self) -> Real:
-        """Diagonal of the mass matrix on ux uy uz rx ry rz."""
-        return np.array([self.mass] * 3 + [self.diametral_inertia] * 2 + [self.polar_inertia])
-
-
-@dataclass(frozen=True)
-class Shaft:
-    """A straight shaft along +z from `origin` (m), of round sections, with disks."""
-
-    material: Material
-    origin: Vector
-    sections: tuple[Section, ...]
-    shear_coefficient: float | None  # None: Cowper's of each section
-    elements: tuple[int, ...]  # elements of each span between stations; one number holds for every span
-    disks: tuple[Disk, ...] = ()
-    beam: str = "timoshenko"  # a key of beam.BEAMS
-
-    @property
-    def length(self) -> float:
-        """Total length, m."""
-        return sum(section.length for section in self.sections)
-
-    def shear_coefficient_of(self, section: Section) -> float:
-        """The shear coefficient of one of the sections: the shaft's own, or Cowper's."""
-        given = self.shear_coefficient
-        return section.cowper_coefficient(self.material.poisson_ratio) if given is None else given
-
-    def position(self, z: float) -> Vector:
-        """Global position of the station z."""
-        x0, y0, z0 = self.origin
-        return (x0, y0, z0 + z)
-
-    def disk(self, name: str) -> Disk:
-        """The disk of that name."""
-        return next(disk for disk in self.disks if disk.name == name)
-
-
-@dataclass(frozen=True)
-class Mesh:
-    """A gear mesh along the line of action y: stiffness (N/m), base radii of its two gears (m)."""
-
-    between: tuple[tuple[str, str], tuple[str, str]]  # (shaft, disk) of the first and the second gear
-    stiffness: float
-    base_radii: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class ShaftPoint:
-    """A point on the axis of a shaft, z from its first end (m)."""
-
-    shaft: str
-    z: float
 
 
 @dataclass(frozen=True)
@@ -101,7 +35,7 @@ class GearTrain:
 
         stations are ports that get a node of their own (bearings); probes are ports read from the shape functions of
         the element they fall in (sensors, forces). Where rz is not among `dofs` each disk spins freely about its
-        shaft and only p = sum(r theta) of each mesh is kept as a coordinate, with the mass 1/(r1^2/J1 + r2^2/J2).
+        shaft and only p = sum(r cos(beta_b) theta) of each mesh is kept as a coordinate, along its line of action.
         """
         shaft_dofs = self._shaft_dofs(dofs)
         grids = {
@@ -133,27 +67,28 @@ class GearTrain:
         return Structure(M, K, rigid, self.modal_damping, ports, self._mesh_motions(M, grids, starts, spins))
 
     def _shaft_dofs(self, dofs: Sequence[str]) -> tuple[str, ...]:
-        """Degrees of freedom of every shaft node: whole bending planes, and the plane of the line of action."""
+        """Degrees of freedom of every shaft node: whole bending planes, and what the meshes press on."""
         planes = [("ux", "ry"), ("uy", "rx"), ("uz",), ("rz",)]
-        wanted = set(dofs) | ({"uy"} if self.meshes else set())
+        wanted = set(dofs)
+        for mesh in self.meshes.values():  # gears turn about z without a degree of freedom of the shaft
+            pressed = np.any([row[:5] for _, row in self._gears(mesh)], axis=0)
+            wanted |= {dof for dof, used in zip(DOFS, pressed) if used}
         kept = {dof for plane in planes if wanted & set(plane) for dof in plane}
         return tuple(dof for dof in DOFS if dof in kept)
 
-    def _gears(self, mesh: Mesh) -> tuple[tuple[ShaftPoint, float, float], ...]:
-        """Both gears of a mesh: where, sign along the line of action, lever of theta_z in the mesh deformation."""
+    def _gears(self, mesh: Mesh) -> tuple[tuple[ShaftPoint, Real], ...]:
+        """Both gears of a mesh: where, and the row of their motion in the mesh deformation, (6,)."""
         points = [ShaftPoint(shaft, self.shafts[shaft].disk(disk).z) for shaft, disk in mesh.between]
-        x1, x2 = (self.shafts[point.shaft].origin[0] for point in points)
-        turn = 1.0 if x1 <= x2 else -1.0  # the contact lies between the axes
-        return tuple((point, sign, turn * radius) for point, sign, radius in zip(points, (1.0, -1.0), mesh.base_radii))
+        rows = mesh.deformation(*(self.shafts[point.shaft].position(point.z) for point in points))
+        return tuple(zip(points, rows))
 
     def _deflections(self, row: Callable[[ShaftPoint], Real], size: int, spins: int) -> list[Real]:
-        """Mesh deformation b of each mesh: b @ q = y1 - y2 + p, p = r1 theta1 + r2 theta2."""
+        """Mesh deformation b of each mesh: b @ q = delta (see `gear_mesh`), free spins p added."""
         out = []
         for k, mesh in enumerate(self.meshes.values()):
             b = np.zeros(size)
-            for point, sign, lever in self._gears(mesh):
-                motion = row(point)
-                b += sign * motion[1] + lever * motion[5]
+            for point, gear in self._gears(mesh):
+                b += gear @ row(point)
             if spins:
                 b[size - spins + k] = 1.0
             out.append(b)
@@ -162,13 +97,13 @@ class GearTrain:
     def _spin_mass(self) -> Real:
         """Mass of the spin coordinates p = T theta of freely spinning disks: (T J^-1 T^T)^-1.
 
-        For one mesh m_e = 1/(r1^2/J1 + r2^2/J2).
+        For one mesh m_e = 1/(r1^2/J1 + r2^2/J2) / cos^2(beta_b), the levers being r cos(beta_b).
         """
         disks = {(s, disk.name): disk.polar_inertia for s, shaft in self.shafts.items() for disk in shaft.disks}
         T = np.zeros((len(self.meshes), len(disks)))
         for k, mesh in enumerate(self.meshes.values()):
-            for gear, (_, _, lever) in zip(mesh.between, self._gears(mesh)):
-                T[k, list(disks).index(gear)] += lever
+            for gear, (_, row) in zip(mesh.between, self._gears(mesh)):
+                T[k, list(disks).index(gear)] += row[5]
         mobility = (T / np.array(list(disks.values()))) @ T.T
         return np.asarray(scipy.linalg.inv((mobility + mobility.T) / 2.0))
 
@@ -209,8 +144,8 @@ class GearTrain:
             for s, (name, grid) in enumerate(grids.items()):
                 spin[starts[name] : starts[name] + grid.size, s] = grid.rigid()[:, grid.dofs.index("rz")]
                 for k, mesh in enumerate(self.meshes.values()):
-                    for point, _, lever in self._gears(mesh):
-                        levers[k, s] += lever if point.shaft == name else 0.0
+                    for point, row in self._gears(mesh):
+                        levers[k, s] += row[5] if point.shaft == name else 0.0
         compliance = np.linalg.solve(spin.T @ M @ spin, levers.T)
         d = spin @ compliance @ np.linalg.inv(levers @ compliance)
         return {name: MeshMotion(d[:, k], float(d[:, k] @ M @ d[:, k])) for k, name in enumerate(self.meshes)}

@@ -2,8 +2,11 @@
 
 import numpy as np
 import scipy.linalg
+import scipy.sparse
+import scipy.sparse.linalg
 
-from ..numerics.arrays import Complex, Real
+from ..errors import AccuracyError
+from ..numerics.arrays import Complex, Real, Sparse
 from .modes import Modes, modes
 from .structure import Structure
 
@@ -26,12 +29,31 @@ def mobility_modal(modes: Modes, rows: Real, modal_damping: float, omega: Real) 
 
 def mobility_direct(structure: Structure, rows: Real, omega: Real) -> Complex:
     """Y = i w L ((1 + i eta) K - w^2 M + i w C)^-1 L^T (Eq. 6), shape (F, m, m) for rows (m, n)."""
-    C = modal_damping_matrix(structure)
+    C = damping_matrix(structure)
     out = np.empty((len(omega), len(rows), len(rows)), complex)
     for k, w in enumerate(omega):
         dynamic = (1.0 + 1j * structure.loss_factor) * structure.stiffness - w**2 * structure.mass + 1j * w * C
-        out[k] = 1j * w * rows @ scipy.linalg.solve(dynamic, rows.T.astype(complex))
+        motion = rows.T.astype(complex)
+        if scipy.sparse.issparse(dynamic):
+            out[k] = 1j * w * rows @ scipy.sparse.linalg.splu(scipy.sparse.csc_array(dynamic)).solve(motion)
+        else:
+            out[k] = 1j * w * rows @ scipy.linalg.solve(dynamic, motion)
     return out
+
+
+def damping_matrix(structure: Structure) -> Real | Sparse:
+    """C of a structure: modal damping of a dense one; a sparse one has a loss factor only.
+
+    Raises AccuracyError for modal damping of a sparse structure, whose modes are not all known.
+    """
+    if not scipy.sparse.issparse(structure.mass):
+        return modal_damping_matrix(structure)
+    if structure.modal_damping:
+        raise AccuracyError(
+            "modal damping of a plate or frame has no damping matrix, for not all of its modes are known; "
+            "give it a loss_factor for this"
+        )
+    return scipy.sparse.csc_array(structure.mass.shape)
 
 
 def modal_damping_matrix(structure: Structure) -> Real:

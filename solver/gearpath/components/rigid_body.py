@@ -32,12 +32,15 @@ class RigidBody:
             M[i, k] = M[k, i] = value
         return M
 
-    def structure(self, dofs: Sequence[str], points: Mapping[str, Vector]) -> Structure:
-        """Rows of the named points (Eq. 17, all six degrees of freedom) on the coordinates that they reach.
+    def structure(
+        self, dofs: Sequence[str], ports: Mapping[str, Vector], probes: Mapping[str, Vector] | None = None
+    ) -> Structure:
+        """Rows of all points (Eq. 17, all six degrees of freedom) on the coordinates that they reach.
 
         The port "cg" is always there. A planar port set (uy, rx) keeps uy, rx and rz, as in Eq. 15.
         """
         active = np.array([dof in dofs for dof in DOFS])
+        points = {**ports, **(probes or {})}
         offsets = {name: np.subtract(point, self.centre_of_gravity) for name, point in points.items()}
         rows = {name: active[:, None] * rigid_motion(offset) for name, offset in offsets.items()}
         M = self.inertia_matrix()
@@ -45,14 +48,14 @@ class RigidBody:
         for _ in DOFS:  # products of inertia drag further coordinates along
             reached |= (M != 0.0) @ reached
         kept = np.flatnonzero(reached)
-        ports = {name: row[:, kept] for name, row in rows.items()}
-        ports["cg"] = np.eye(6)[:, kept]
+        seen = {name: row[:, kept] for name, row in rows.items()}
+        seen["cg"] = np.eye(6)[:, kept]
         return Structure(
             mass=M[np.ix_(kept, kept)],
             stiffness=np.zeros((len(kept), len(kept))),
             rigid_modes=np.eye(len(kept)),
             modal_damping=0.0,
-            ports=ports,
+            ports=seen,
         )
 
     def coordinates(self, structure: Structure) -> tuple[str, ...]:

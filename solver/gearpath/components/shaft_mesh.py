@@ -1,11 +1,8 @@
 """One shaft as a chain of beam elements with disks, on the active degrees of freedom of its nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +10,9 @@ from ..errors import InputError
 from ..numerics.arrays import Real
 from .beam import beam_element, beam_shapes
 from .dofs import DOFS, rigid_motion
-
-if TYPE_CHECKING:
-    from .gear_train import Shaft
-    from .section import Section
+from .section import Section
+from .shaft import Shaft
+from .tapered_beam import tapered_element, tapered_shapes
 
 _SAME = 1e-9  # stations closer than this part of the shaft length are one
 
@@ -48,9 +44,8 @@ class ShaftMesh:
             first = (e + nearest) * len(self.dofs)
             out[picked, first + np.arange(len(picked))] = 1.0
             return out
-        section = section_at(self.shaft, (self.nodes[e] + self.nodes[e + 1]) / 2.0)
-        kappa = self.shaft.shear_coefficient_of(section)
-        N, _ = beam_shapes(self.shaft.beam, xi, section, self.shaft.material, length, kappa)
+        section = section_between(self.shaft, float(self.nodes[e]), float(self.nodes[e + 1]))
+        N = _shapes(self.shaft, section, xi, length)
         first = e * len(self.dofs)
         out[:, first : first + 2 * len(picked)] = N[:, np.concatenate([picked, picked + 6])]
         return out
@@ -66,14 +61,32 @@ def _picked(dofs: Sequence[str]) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     return np.array([DOFS.index(dof) for dof in dofs])
 
 
-def section_at(shaft: Shaft, z: float) -> Section:
-    """The section that covers z."""
-    end = 0.0
+def section_between(shaft: Shaft, start: float, end: float) -> Section:
+    """What the section that covers start to end has there: itself, or the part of a tapered one."""
+    at = 0.0
     for section in shaft.sections:
-        end += section.length
-        if z <= end:
+        if at + section.length >= (start + end) / 2.0:
             break
-    return section
+        at += section.length
+    if not section.tapered:
+        return section
+    return section.part((start - at) / section.length, (end - at) / section.length)
+
+
+def _shapes(shaft: Shaft, section: Section, xi: float, length: float) -> Real:
+    if section.tapered:
+        return tapered_shapes(shaft.beam, xi, section, shaft.material, length, shaft.shear_coefficient)
+    return beam_shapes(shaft.beam, xi, section, shaft.material, length, shaft.shear_coefficient_of(section))[0]
+
+
+def _elements(shaft: Shaft, start: float, end: float, count: int) -> list[tuple[Real, Real]]:
+    """Stiffness and mass of the elements of a span; those of a constant section are all alike."""
+    length, section = (end - start) / count, section_between(shaft, start, end)
+    if not section.tapered:
+        kappa = shaft.shear_coefficient_of(section)
+        return [beam_element(shaft.beam, section, shaft.material, length, kappa)] * count
+    parts = [section.part(k / count, (k + 1) / count) for k in range(count)]
+    return [tapered_element(shaft.beam, part, shaft.material, length, shaft.shear_coefficient) for part in parts]
 
 
 def shaft_stations(shaft: Shaft, bearings: Sequence[float]) -> Real:
@@ -89,28 +102,23 @@ def mesh_shaft(shaft: Shaft, bearings: Sequence[float], dofs: tuple[str, ...]) -
     Raises InputError where the number of spans and of entries in `elements` differ.
     """
     stations = shaft_stations(shaft, bearings)
-    spans = len(stations) - 1
-    counts = shaft.elements * spans if len(shaft.elements) == 1 else shaft.elements
-    if len(counts) != spans:
+    wanted = len(stations) - 1
+    counts = shaft.elements * wanted if len(shaft.elements) == 1 else shaft.elements
+    if len(counts) != wanted:
         raise InputError(
-            f"elements has {len(counts)} entries for {spans} spans between the stations "
-            f"{', '.join(f'{z:g}' for z in stations)} m; give {spans} numbers, or one for all spans"
+            f"elements has {len(counts)} entries for {wanted} spans between the stations "
+            f"{', '.join(f'{z:g}' for z in stations)} m; give {wanted} numbers, or one for all spans"
         )
     nodes = np.concatenate([[0.0], *(np.linspace(a, b, n + 1)[1:] for (a, b), n in zip(pairwise(stations), counts))])
     picked, width = _picked(dofs), len(dofs)
     chosen = np.ix_(*[np.concatenate([picked, picked + 6])] * 2)
     M, K = (np.zeros((len(nodes) * width, len(nodes) * width)) for _ in range(2))
-    first = 0
-    for (start, end), count in zip(pairwise(stations), counts):  # the elements of a span are all alike
-        section = section_at(shaft, (start + end) / 2.0)
-        kappa = shaft.shear_coefficient_of(section)
-        element = beam_element(shaft.beam, section, shaft.material, (end - start) / count, kappa)
-        element_K, element_M = (matrix[chosen] for matrix in element)
-        for e in range(first, first + count):
-            block = slice(e * width, (e + 2) * width)
-            K[block, block] += element_K
-            M[block, block] += element_M
-        first += count
+    spans = pairwise(float(z) for z in stations)
+    elements = [item for (start, end), n in zip(spans, counts) for item in _elements(shaft, start, end, n)]
+    for e, element in enumerate(elements):
+        block = slice(e * width, (e + 2) * width)
+        K[block, block] += element[0][chosen]
+        M[block, block] += element[1][chosen]
     for disk in shaft.disks:
         node = int(np.argmin(abs(nodes - disk.z)))
         at = node * width + np.arange(width)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ..numerics.arrays import Real
+from ..numerics.arrays import Real, Sparse
 
 
 @dataclass(frozen=True)
@@ -13,8 +13,8 @@ class Structure:
     C is modal: each elastic free-free mode has the damping ratio `modal_damping`. eta is `loss_factor`.
     """
 
-    mass: Real  # (n, n), symmetric positive definite
-    stiffness: Real  # (n, n), symmetric positive semidefinite
+    mass: Real | Sparse  # (n, n), symmetric positive definite
+    stiffness: Real | Sparse  # (n, n), symmetric positive semidefinite
     rigid_modes: Real  # (n, r), a basis of the null space of the stiffness
     modal_damping: float  # damping ratio of every elastic mode
     ports: Mapping[str, Real]  # port name -> (6, n): motion ux uy uz rx ry rz of the port = rows @ q
@@ -24,7 +24,7 @@ class Structure:
     @property
     def size(self) -> int:
         """Number of generalised coordinates n."""
-        return len(self.mass)
+        return int(self.mass.shape[0])
 
 
 @dataclass(frozen=True)

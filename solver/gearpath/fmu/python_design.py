@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..components import RigidBody, Shaft
+from ..components import GearTrain, RigidBody, Shaft
 from ..errors import InputError
 from ..network.system import System
 from .python_parts import DesignParameter, body_parameters, joint_position, mesh_position, shaft_parameters
@@ -22,10 +22,10 @@ def design_parameters(system: System) -> tuple[DesignParameter, ...]:
     for name, component in system.components.items():
         if isinstance(component, RigidBody):
             found += body_parameters(name, component)
-            continue
-        for shaft in component.shafts:
-            found += shaft_parameters(name, shaft, component.shafts[shaft])
-        found += [mesh_position(name, mesh) for mesh in component.meshes]
+        elif isinstance(component, GearTrain):
+            for shaft in component.shafts:
+                found += shaft_parameters(name, shaft, component.shafts[shaft])
+            found += [mesh_position(name, mesh) for mesh in component.meshes]
     for name, joint in system.joints.items():
         if joint.at is not None:
             found += [joint_position(name, axis) for axis in range(3)]
@@ -46,9 +46,9 @@ def redesign(system: System, values: Mapping[str, float]) -> System:
     for name, component in changed.components.items():
         if isinstance(component, RigidBody):
             _check_body(name, component)
-            continue
-        for shaft_name, shaft in component.shafts.items():
-            _check_shaft(f"{name}.{shaft_name}", shaft)
+        elif isinstance(component, GearTrain):
+            for shaft_name, shaft in component.shafts.items():
+                _check_shaft(f"{name}.{shaft_name}", shaft)
     return changed
 
 

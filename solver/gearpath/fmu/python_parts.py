@@ -105,7 +105,7 @@ def _with_shaft(system: System, name: str, shaft_name: str, shaft: Shaft) -> Sys
 
 
 def shaft_parameters(name: str, shaft_name: str, shaft: Shaft) -> list[DesignParameter]:
-    """Length of a shaft, and its diameter where it has one section."""
+    """Length of a shaft, and its diameter where it is the same all along."""
 
     def shaft_of(system: System) -> Shaft:
         return _train(system, name).shafts[shaft_name]
@@ -123,7 +123,7 @@ def shaft_parameters(name: str, shaft_name: str, shaft: Shaft) -> list[DesignPar
         lambda system: shaft_of(system).length,
         lambda system, value: _stretch(system, name, shaft_name, value / shaft_of(system).length),
     )
-    if len(shaft.sections) != 1:
+    if len(shaft.sections) != 1 or shaft.sections[0].tapered:
         return [length]
     diameter = DesignParameter(
         f"{name}.{shaft_name}.diameter",

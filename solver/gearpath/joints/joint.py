@@ -10,13 +10,14 @@ Matrix = tuple[tuple[float, ...], ...]
 class Port:
     """Where something is attached: a component, and on a gear train the shaft with a station or a disk.
 
-    `Port("ground")` is the ground; `Port("casing")` a rigid body, at the place that the joint gives.
+    `Port("ground")` is the ground; `Port("casing")` a rigid body or plate, at the place that the joint gives.
     """
 
     component: str
     shaft: str | None = None
     z: float | None = None  # station from the shaft's first end, m
     disk: str | None = None  # instead of z: the station of this disk
+    place: str | None = None  # on a plate its footprint, on a frame its node or "plate.footprint"
 
     @property
     def is_ground(self) -> bool:

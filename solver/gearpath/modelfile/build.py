@@ -1,12 +1,15 @@
 """From a checked file to the `System` that the physics works on."""
 
-from ..components import Disk, GearTrain, Material, Mesh, RigidBody, Section, Shaft
-from ..joints import Joint, Port
+from ..components import Disk, GearTrain, Mesh, RigidBody, Section, Shaft
+from ..joints import Joint, Port, beam_joint
 from ..joints.joint import Matrix
 from ..network.system import Actuator, Component, MeshExcitation, PointExcitation, Sensor, System, Vector
-from .references import find_gear, find_mesh, find_port
-from .tables import ActuatorTable, ExcitationTable, FileTable, JointTable, RigidBodyTable
-from .train_tables import GearTrainTable, ShaftTable
+from .build_structures import build_frame, build_material, build_plate, shear_coefficient_of
+from .joint_tables import BeamJointTable, JointTable
+from .references import beam_offset, find_gear, find_mesh, find_port
+from .structure_tables import FrameTable, PlateTable
+from .tables import ActuatorTable, ComponentTable, ExcitationTable, FileTable, RigidBodyTable
+from .train_tables import GearTrainTable, MeshTable, SectionTable, ShaftTable
 
 
 def build_system(file: FileTable) -> System:
@@ -22,28 +25,42 @@ def build_system(file: FileTable) -> System:
             name: Sensor(_port(file, table), table.dof, table.quantity, _at(table))
             for name, table in file.sensors.items()
         },
+        loss_frequency=(file.frequency.start * file.frequency.stop) ** 0.5,
+        band=file.frequency.stop,
+        vectors={
+            name: table.vectors
+            for name, table in file.components.items()
+            if isinstance(table, (PlateTable, FrameTable)) and table.vectors is not None
+        },
     )
 
 
-def _component(file: FileTable, table: GearTrainTable | RigidBodyTable) -> Component:
+def _component(file: FileTable, table: ComponentTable) -> Component:
+    if isinstance(table, PlateTable):
+        return build_plate(file.materials, table)
+    if isinstance(table, FrameTable):
+        return build_frame(file.materials, table)
     if isinstance(table, RigidBodyTable):
         inertia = {key: value for key, value in table.inertia.model_dump().items() if value != 0.0}
         return RigidBody(table.mass, inertia, table.centre_of_gravity)
-    meshes = {}
-    for name, mesh in table.meshes.items():
-        first, second = (find_gear(table, text, name) for text in mesh.between)
-        meshes[name] = Mesh((first, second), mesh.stiffness, mesh.base_radii)
+    meshes = {name: build_mesh(table, mesh) for name, mesh in table.meshes.items()}
     shafts = {name: build_shaft(file, shaft) for name, shaft in table.shafts.items()}
     return GearTrain(shafts, meshes, table.modal_damping)
 
 
+def build_mesh(train: GearTrainTable, table: MeshTable) -> Mesh:
+    """A mesh whose gears are known."""
+    first, second = (find_gear(train, text, "between") for text in table.between)
+    return Mesh((first, second), **table.model_dump(exclude={"between"}))
+
+
 def build_shaft(file: FileTable, table: ShaftTable) -> Shaft:
     """A shaft whose material is known and whose form is complete."""
-    material = Material(**file.materials[table.material].model_dump())
+    material = build_material(file.materials, table.material)
     if table.length is not None and table.diameter is not None:
         sections: tuple[Section, ...] = (Section(table.length, table.diameter),)
     else:
-        sections = tuple(Section(part.length, part.outer, part.inner) for part in table.sections)
+        sections = tuple(_section(part) for part in table.sections)
     return Shaft(
         material=material,
         origin=table.origin,
@@ -55,8 +72,17 @@ def build_shaft(file: FileTable, table: ShaftTable) -> Shaft:
     )
 
 
+def _section(table: SectionTable) -> Section:
+    (outer, outer_end), (inner, inner_end) = table.diameters()
+    if (outer, inner) == (outer_end, inner_end):
+        return Section(table.length, outer, inner)
+    return Section(table.length, outer, inner, outer_end, inner_end)
+
+
 def _joint(file: FileTable, table: JointTable) -> Joint:
     first, second = (find_port(file, text, "between") for text in table.between)
+    if isinstance(table, BeamJointTable):
+        return _beam_joint(file, table, (first, second))
     stiffness = _matrix(table.stiffness)
     if table.damping is not None:
         damping = _matrix(table.damping)
@@ -65,7 +91,24 @@ def _joint(file: FileTable, table: JointTable) -> Joint:
         damping = tuple(tuple(time * value for value in row) for row in stiffness)
     scalar = not isinstance(table.stiffness, tuple)
     dofs = ("uy",) if scalar else file.dofs
-    return Joint(table.kind, (first, second), dofs, stiffness, damping, table.at, scalar)
+    return Joint(table.kind, (first, second), dofs, stiffness, damping, table.at, scalar, table.loss_factor)
+
+
+def _beam_joint(file: FileTable, table: BeamJointTable, between: tuple[Port, Port]) -> Joint:
+    material = build_material(file.materials, table.material)
+    kappa = shear_coefficient_of(table.shear_coefficient, table.diameter, table.inner_diameter, material.poisson_ratio)
+    return beam_joint(
+        between,
+        beam_offset(file, table),
+        file.dofs,
+        table.diameter,
+        material.youngs_modulus,
+        material.poisson_ratio,
+        table.inner_diameter,
+        kappa,
+        table.loss_factor,
+        table.at,
+    )
 
 
 def _matrix(value: float | Matrix) -> Matrix:

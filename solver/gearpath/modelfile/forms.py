@@ -92,6 +92,34 @@ class Elements(Leaf):
 
 
 @dataclass(frozen=True)
+class Ends(Leaf):
+    """A quantity along a section: one number, or its values at both ends."""
+
+    entry: Quantity
+
+    def check(self, value: object) -> float | tuple[float, float]:
+        """The number, or both."""
+        if not isinstance(value, list):
+            return self.entry.check(value)
+        if len(value) != 2:
+            raise wrong(f"{show(value)} is not a list of 2 numbers", f"give {self.wanted()}")
+        return (self.entry.check(value[0]), self.entry.check(value[1]))
+
+    def wanted(self) -> str:
+        """Both forms."""
+        return f"the {self.description} in {self.entry.unit}, one number or [first end, far end]"
+
+    def explanation(self) -> str:
+        """Both forms with their unit."""
+        return f"{super().explanation()}, one number or those at both ends, in {self.entry.unit}"
+
+    def schema(self) -> dict[str, Any]:
+        """A number or two."""
+        number = self.entry.schema()
+        return {"oneOf": [number, {"type": "array", "items": number, "minItems": 2, "maxItems": 2}]}
+
+
+@dataclass(frozen=True)
 class Dofs(Leaf):
     """Distinct degrees of freedom; matrices of joints follow their order."""
 

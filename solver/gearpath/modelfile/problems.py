@@ -15,7 +15,7 @@ def first_problem(error: ValidationError, data: object, file: str | None) -> Mod
     found = error.errors(include_url=False, include_input=True)[0]
     context: Mapping[str, Any] = found.get("ctx", {})
     location = list(found["loc"])
-    if location[0:1] == ["components"] and len(location) > 2:
+    if location[:1] in (["components"], ["joints"]) and len(location) > 2:
         del location[2]  # pydantic puts the kind there
     if location[-1:] == ["[key]"]:
         del location[-1]

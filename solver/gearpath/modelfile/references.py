@@ -7,7 +7,9 @@ from math import inf, isfinite
 from ..errors import ModelError
 from ..joints import Port
 from .hints import hint
-from .tables import FileTable
+from .joint_tables import BeamJointTable
+from .structure_tables import FrameTable, PlateTable
+from .tables import FileTable, RigidBodyTable
 from .train_tables import GearTrainTable, ShaftTable
 from .wording import show
 
@@ -41,7 +43,9 @@ def find_port(file: FileTable, text: str, key: str) -> Port:
     name, shaft, z, disk = found.group("component", "shaft", "z", "disk")
     find("component", name, file.components, key)
     component = file.components[name]
-    if not isinstance(component, GearTrainTable):
+    if isinstance(component, (PlateTable, FrameTable)):
+        return _structure_port(name, component, text, key)
+    if isinstance(component, RigidBodyTable):
         if text != name:
             raise ModelError(
                 key,
@@ -64,6 +68,24 @@ def find_port(file: FileTable, text: str, key: str) -> Port:
         find("disk", text, disks, key)
         return Port(name, shaft, disk=disk)
     return Port(name, shaft, z=_station(text, z, length(table), key))
+
+
+def _structure_port(name: str, table: PlateTable | FrameTable, text: str, key: str) -> Port:
+    """A footprint or the whole of a plate (with a place given by `at`), or a place of a frame."""
+    if isinstance(table, PlateTable) and text == name:
+        return Port(name)
+    known = list(table.footprints) if isinstance(table, PlateTable) else places_of(table)
+    what = "footprint" if isinstance(table, PlateTable) else "place"
+    place = text[len(name) + 1 :]
+    if place not in known:
+        problem = f"there is no {what} {show(text)}" if place else f"{show(text)} names no place on a frame"
+        raise ModelError(key, problem, hint(text, [f"{name}.{other}" for other in known]))
+    return Port(name, place=place)
+
+
+def places_of(table: FrameTable) -> list[str]:
+    """Everything of a frame that something can be attached to."""
+    return [*table.nodes, *(f"{name}.{spot}" for name, plate in table.plates.items() for spot in plate.footprints)]
 
 
 def _station(text: str, z: str, end: float, key: str) -> float:
@@ -110,10 +132,34 @@ def station_of(file: FileTable, port: Port) -> float | None:
 
 
 def place_of(file: FileTable, port: Port) -> tuple[float, float, float] | None:
-    """Global place of a shaft station, m; None off a gear train."""
+    """Global place of a shaft station, a footprint or a node, m; None where the joint gives it."""
     train = None if port.is_ground else file.components[port.component]
+    if isinstance(train, (PlateTable, FrameTable)):
+        return _structure_place(train, port.place)
     z = station_of(file, port)
     if not isinstance(train, GearTrainTable) or port.shaft is None or z is None:
         return None
     x0, y0, z0 = train.shafts[port.shaft].origin
     return (x0, y0, z0 + z)
+
+
+def _structure_place(table: PlateTable | FrameTable, place: str | None) -> tuple[float, float, float] | None:
+    if place is None:
+        return None
+    if isinstance(table, PlateTable):
+        return table.footprints[place].centre
+    if place in table.nodes:
+        return table.nodes[place]
+    plate, footprint = place.split(".")
+    return table.plates[plate].footprints[footprint].centre
+
+
+def beam_offset(file: FileTable, table: BeamJointTable) -> tuple[float, float, float]:
+    """From the source's end of a beam joint to the receiver's: given, or the way between their places."""
+    if table.offset is not None:
+        return table.offset
+    start, end = (place_of(file, find_port(file, text, "between")) for text in table.between)
+    end = table.at if end is None else end
+    assert start is not None
+    assert end is not None
+    return (end[0] - start[0], end[1] - start[1], end[2] - start[2])

@@ -13,7 +13,7 @@ _ONE_OF = {
     "ExcitationTable": (("mesh",), ("point", "dof")),
 }
 _NAMED = ("properties", "patternProperties", "$defs", "default")
-_NOT_BOTH = {"JointTable": ("damping", "damping_time")}
+_NOT_BOTH = {"MatrixJointTable": ("damping", "damping_time")}
 
 
 def json_schema() -> dict[str, Any]:

@@ -3,22 +3,25 @@
 Rules between several keys are in `checks`, the resolution of references in `references`.
 """
 
+from collections.abc import Callable, Sequence
 from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 from pydantic import BeforeValidator, Field
 
 from ..components.dofs import DOFS
-from ..joints.joint import Matrix, Vector
+from ..joints.joint import Vector
 from ..numerics.arrays import Real
-from .forms import Dofs, Impedance, Spot
+from .forms import Dofs, Spot
 from .hints import hint
+from .joint_tables import JOINTS, JointTable
 from .leaf import is_table, wrong
 from .numbers import Count, Quantity, Row
+from .structure_tables import FrameTable, PlateTable
 from .table import Table
 from .train_tables import GearTrainTable, MaterialTable, Named
 from .wording import show
-from .words import Choice, Pair, Text
+from .words import Choice, Text
 
 PLACE = Row("place", Quantity("coordinate", "m", plausible=(-1e3, 1e3), slip="did you mean m, not mm?"), 3)
 Quantities = Literal["displacement", "velocity", "acceleration"]
@@ -60,48 +63,30 @@ class RigidBodyTable(Table):
     centre_of_gravity: Annotated[Vector, PLACE.named("centre of gravity")] = (0.0, 0.0, 0.0)
 
 
-COMPONENTS: dict[str, type[GearTrainTable | RigidBodyTable]] = {
-    "gear_train": GearTrainTable,
-    "rigid_body": RigidBodyTable,
-}
+ComponentTable = GearTrainTable | RigidBodyTable | PlateTable | FrameTable
+COMPONENTS = ("gear_train", "rigid_body", "plate", "frame")
 
 
-def _known_kind(value: Any) -> Any:
-    """Refuse a component whose kind is missing or not available."""
-    is_table(value)
-    if "kind" not in value:
-        raise wrong("is missing", f"give the kind of component, {' or '.join(map(show, COMPONENTS))}", "kind")
-    kind = value["kind"]
-    if not isinstance(kind, str) or kind not in COMPONENTS:
-        raise wrong(f"{show(kind)} is not a kind of component", hint(kind, COMPONENTS), "kind")
-    return value
+def _known_kind(what: str, kinds: Sequence[str]) -> Callable[[Any], Any]:
+    """Refuses a table whose kind is missing or not available."""
+
+    def check(value: Any) -> Any:
+        is_table(value)
+        if "kind" not in value:
+            known = f"{', '.join(map(show, kinds[:-1]))} or {show(kinds[-1])}"
+            raise wrong("is missing", f"give the kind of {what}, {known}", "kind")
+        kind = value["kind"]
+        if not isinstance(kind, str) or kind not in kinds:
+            raise wrong(f"{show(kind)} is not a kind of {what}", hint(kind, kinds), "kind")
+        return value
+
+    return check
 
 
-ComponentTable = Annotated[
-    GearTrainTable | RigidBodyTable, Field(discriminator="kind"), BeforeValidator(_known_kind)
+AnyComponent = Annotated[
+    ComponentTable, Field(discriminator="kind"), BeforeValidator(_known_kind("component", COMPONENTS))
 ]
-
-
-class JointTable(Table):
-    """A bearing or mount, massless, with stiffness and damping."""
-
-    kind: Annotated[str, Choice("kind of joint", ("bearing", "mount"))]
-    between: Annotated[
-        tuple[str, str], Pair("two ends, source and receiver", ("gear_train.input@0.0", "casing"))
-    ]
-    at: Annotated[Vector | None, PLACE.named("place of the joint where no shaft station gives it")] = None
-    stiffness: Annotated[float | Matrix, Impedance("stiffness", "N/m")]
-    damping: Annotated[float | Matrix | None, Impedance("damping", "N s/m")] = None
-    damping_time: Annotated[
-        float | None,
-        Quantity(
-            "time T of the damping C = T K",
-            "s",
-            at_least=0.0,
-            plausible=(0.0, 1.0),
-            slip="did you mean s, not us?",
-        ),
-    ] = None
+AnyJoint = Annotated[JointTable, Field(discriminator="kind"), BeforeValidator(_known_kind("joint", JOINTS))]
 
 
 class ExcitationTable(Table):
@@ -145,8 +130,8 @@ class FileTable(Table):
     dofs: Annotated[tuple[str, ...], Dofs("active degrees of freedom")] = DOFS
     frequency: Annotated[FrequencyTable, Field(description="Frequencies of sweeps")] = FrequencyTable()
     materials: Annotated[Named[MaterialTable], Field(description="Materials by name", default_factory=dict)]
-    components: Annotated[Named[ComponentTable], Field(description="Components by name")]
-    joints: Annotated[Named[JointTable], Field(description="Bearings and mounts by name")]
+    components: Annotated[Named[AnyComponent], Field(description="Components by name")]
+    joints: Annotated[Named[AnyJoint], Field(description="Bearings, mounts and bolted joints by name")]
     excitation: Annotated[ExcitationTable, Field(description="What drives the machine")]
     actuators: Annotated[
         Named[ActuatorTable], Field(description="Additional inputs by name", default_factory=dict)

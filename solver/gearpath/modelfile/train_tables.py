@@ -5,7 +5,8 @@ from typing import Annotated, Literal, TypeVar
 from pydantic import BeforeValidator, Field
 
 from ..components.beam import BEAMS
-from .forms import Elements
+from ..components.gear_mesh import TORQUES
+from .forms import Elements, Ends
 from .leaf import is_list, is_table
 from .numbers import Quantity, Row
 from .table import Table
@@ -15,12 +16,18 @@ T = TypeVar("T")
 Named = Annotated[dict[Annotated[str, Name("name")], T], BeforeValidator(is_table)]
 Several = Annotated[tuple[T, ...], BeforeValidator(is_list)]
 Vector = tuple[float, float, float]
+Two = tuple[float, float]
 _PLACE = Quantity("coordinate", "m", plausible=(-1e3, 1e3), slip="did you mean m, not mm?")
 
 
 def _length(description: str, longest: float = 100.0) -> Quantity:
     slip = "did you mean m, not mm?"
     return Quantity(description, "m", above=0.0, plausible=(0.0, longest), slip=slip)
+
+
+def _angle(description: str, lowest: float) -> Quantity:
+    slip = "did you mean rad, not degrees? (20 degrees are 0.349 rad)"
+    return Quantity(description, "rad", plausible=(lowest, 0.8), slip=slip)
 
 
 class MaterialTable(Table):
@@ -44,11 +51,16 @@ class MaterialTable(Table):
 
 
 class SectionTable(Table):
-    """A stretch of shaft of constant round section, in order from the first end."""
+    """A stretch of shaft of round section, in order from the first end; a diameter at each end makes a taper."""
 
     length: Annotated[float, _length("length of the section")]
-    outer: Annotated[float, _length("outer diameter", 10.0)]
-    inner: Annotated[float, Quantity("inner diameter", "m", at_least=0.0)] = 0.0
+    outer: Annotated[float | Two, Ends("outer diameter", _length("outer diameter", 10.0))]
+    inner: Annotated[float | Two, Ends("inner diameter", Quantity("inner diameter", "m", at_least=0.0))] = 0.0
+
+    def diameters(self) -> tuple[Two, Two]:
+        """Outer and inner diameter, each at both ends, m."""
+        outer, inner = (value if isinstance(value, tuple) else (value, value) for value in (self.outer, self.inner))
+        return outer, inner
 
 
 class DiskTable(Table):
@@ -81,11 +93,24 @@ class ShaftTable(Table):
 
 
 class MeshTable(Table):
-    """A gear mesh along the line of action y."""
+    """A gear mesh; its line of action is y, or follows from the shafts' places and the pressure angle."""
 
     between: Annotated[tuple[str, str], Pair("two gears, shaft.disk", ("input.pinion", "output.wheel"))]
     stiffness: Annotated[float, Quantity("mesh stiffness", "N/m", above=0.0)]
     base_radii: Annotated[tuple[float, float], Row("base radii of both gears", _length("base radius", 20.0), 2)]
+    pressure_angle: Annotated[
+        float | None, _angle("transverse pressure angle (left out: the line of action is y)", 0.0)
+    ] = None
+    helix_angle: Annotated[
+        float, _angle("helix angle on the base cylinder, positive where the first gear is right-hand", -0.8)
+    ] = 0.0
+    driving_torque: Annotated[
+        str, Choice("sense about z of the torque that presses the first gear on the second", tuple(TORQUES))
+    ] = ""
+    contact_offset: Annotated[
+        float | None,
+        Quantity("distance along z from the first gear to where the teeth press", "m", plausible=(-10.0, 10.0)),
+    ] = None
 
 
 class GearTrainTable(Table):

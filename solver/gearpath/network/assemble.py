@@ -9,6 +9,7 @@ import numpy as np
 import scipy.linalg
 
 from ..components import Modes, Structure
+from ..numerics.arrays import Real
 from .channels import joint_rows, load_columns, output_rows
 from .modal import ModalNetwork
 from .ports import Ports
@@ -70,12 +71,14 @@ def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
     slices = {
         name: slice(int(end) - len(basis[name].eigenvalues), int(end)) for name, end in zip(network.structures, ends)
     }
-    mass = scipy.linalg.block_diag(*(s.mass for s in network.structures.values()))
-    project = mass @ shapes
+
+    def project(motion: Real) -> Real:
+        """Phi^T M d."""
+        momentum = [s.mass @ motion[network.blocks[name]] for name, s in network.structures.items()]
+        return np.asarray(np.concatenate(momentum) @ shapes)
 
     def load(item: Load) -> Load:
-        motion = item.mesh_displacement
-        d = None if motion is None else motion @ project
+        d = None if item.mesh_displacement is None else project(item.mesh_displacement)
         return replace(item, column=item.column @ shapes, mesh_displacement=d)
 
     return ModalNetwork(

@@ -85,7 +85,7 @@ def _dissipated(network: ModalNetwork, solved: Response, w: Real) -> Complex:
         dv = slip[at]
         drag = real_times_complex(C, dv) + real_times_complex(K_lost, dv) / w
         out.append(np.einsum("rjf,rkf->fjk", dv.conj(), drag))
-    return 0.5 * np.array(out)
+    return np.asarray(0.5 * np.array(out))
 
 
 def checked_spectrum(spectrum: object, names: Sequence[str], lines: int) -> Complex:
@@ -120,9 +120,9 @@ def checked_spectrum(spectrum: object, names: Sequence[str], lines: int) -> Comp
             f"spectrum: has a negative eigenvalue ({lowest:.2g} of the autospectra), as no excitation can have; "
             "keep |S_jk|^2 <= S_jj S_kk"
         )
-    return (S + S.conj().swapaxes(-1, -2)) / 2.0
+    return np.asarray((S + S.conj().swapaxes(-1, -2)) / 2.0)
 
 
 def expected(Q: Complex, S: Complex) -> Real:
     """E[P] = tr(Q S), real; Q (..., F, n, n), S (F or 1, n, n)."""
-    return np.real(np.einsum("...jk,...kj->...", Q, np.broadcast_to(S, Q.shape)))
+    return np.asarray(np.einsum("...jk,...kj->...", Q, np.broadcast_to(S, Q.shape)).real)

@@ -5,29 +5,36 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+from scipy.sparse import issparse
 
-from ..components import GearTrain, Modes, ShaftPoint, Structure, modes
+from ..components import Frame, GearTrain, Modes, Plate, RigidBody, ShaftPoint, Structure, modes
 from ..joints import Joint, Port
 from ..numerics.arrays import Real
+from .basis import basis_of
 from .system import Actuator, Component, PointExcitation, Sensor, System, Vector
+
+Spot = ShaftPoint | str | Vector  # a station, a named place, a point
 
 
 @lru_cache(maxsize=32)
 def solve_component(
     component: Component,
     dofs: tuple[str, ...],
-    stations: tuple[tuple[str, ShaftPoint], ...],
-    probes: tuple[tuple[str, ShaftPoint], ...],
-    points: tuple[tuple[str, Vector], ...],
+    ports: tuple[tuple[str, Spot], ...],
+    probes: tuple[tuple[str, Spot], ...],
+    band: float,
+    vectors: int | None,
 ) -> tuple[Structure, Modes]:
-    """A component's structure and modes; remembered, because bearings and mounts are exchanged without touching it."""
-    if isinstance(component, GearTrain):
-        structure = component.structure(dofs, dict(stations), dict(probes))
-    else:
-        structure = component.structure(dofs, dict(points))
-    basis = modes(structure)
+    """A component's structure and modes; remembered, because bearings and mounts are exchanged without touching it.
+
+    Dense structures keep all their modes. Sparse ones (plates, frames) are reduced: exact up to `band` (Hz), or with
+    the given number of interior `vectors`.
+    """
+    structure = component.structure(dofs, dict(ports), dict(probes))  # type: ignore[arg-type]
+    basis = basis_of(structure, band, vectors) if issparse(structure.mass) else modes(structure)
     for array in (structure.mass, structure.stiffness, structure.rigid_modes, basis.eigenvalues, basis.shapes):
-        array.flags.writeable = False  # shared between all networks that hold this component
+        if isinstance(array, np.ndarray):
+            array.flags.writeable = False  # shared between all networks that hold this component
     return structure, basis
 
 
@@ -36,25 +43,20 @@ class Ports:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        stations: dict[str, dict[str, ShaftPoint]] = {name: {} for name in system.components}
-        probes: dict[str, dict[str, ShaftPoint]] = {name: {} for name in system.components}
-        points: dict[str, dict[str, Vector]] = {name: {} for name in system.components}
+        ports: dict[str, dict[str, Spot]] = {name: {} for name in system.components}
+        probes: dict[str, dict[str, Spot]] = {name: {} for name in system.components}
         self.keys: dict[tuple[Port, Vector | None], str] = {}
 
-        def ask(port: Port, at: Vector | None, group: dict[str, dict[str, ShaftPoint]]) -> None:
+        def ask(port: Port, at: Vector | None, group: dict[str, dict[str, Spot]]) -> None:
             if port.is_ground:
                 return
-            key = f"{len(self.keys)}"
-            self.keys.setdefault((port, at), key)
-            component = system.components[port.component]
-            if isinstance(component, GearTrain):
-                group[port.component][self.keys[port, at]] = shaft_point(component, port)
-            elif at is not None:
-                points[port.component][self.keys[port, at]] = at
+            key = self.keys.setdefault((port, at), f"{len(self.keys)}")
+            if (spot := _spot(system, port, at)) is not None:
+                group[port.component][key] = spot
 
         for joint in system.joints.values():
             for port in joint.between:
-                ask(port, port_place(system, joint, port), stations)
+                ask(port, port_place(system, joint, port), ports)
         others: list[Actuator | Sensor] = [*system.actuators.values(), *system.sensors.values()]
         for item in others:
             ask(item.port, item.at, probes)
@@ -62,7 +64,12 @@ class Ports:
             ask(system.excitation.port, system.excitation.at, probes)
         solved = {
             name: solve_component(
-                component, system.dofs, *(tuple(group[name].items()) for group in (stations, probes, points))
+                component,
+                system.dofs,
+                tuple(ports[name].items()),
+                tuple((key, spot) for key, spot in probes[name].items() if key not in ports[name]),
+                system.band,
+                system.vectors.get(name),
             )
             for name, component in system.components.items()
         }
@@ -84,8 +91,8 @@ class Ports:
         """Motion of a port, (6, n); zero on the ground."""
         if port.is_ground:
             return np.zeros((6, self.size))
-        rigid = not isinstance(self.system.components[port.component], GearTrain)
-        key = "cg" if rigid and at is None else self.keys[port, at]
+        body = isinstance(self.system.components[port.component], RigidBody)
+        key = "cg" if body and at is None else self.keys[port, at]
         return self.embed(port.component, self.structures[port.component].ports[key])
 
 
@@ -97,17 +104,31 @@ def shaft_point(train: GearTrain, port: Port) -> ShaftPoint:
     return ShaftPoint(port.shaft, z)
 
 
+def _spot(system: System, port: Port, at: Vector | None) -> Spot | None:
+    """Where on its component a port is; None for the centre of gravity of a rigid body."""
+    component = system.components[port.component]
+    if isinstance(component, GearTrain):
+        return shaft_point(component, port)
+    return at if port.place is None else port.place
+
+
+def _own_place(system: System, port: Port) -> Vector | None:
+    """Global position of a shaft station, a footprint or a node; None where the joint gives it."""
+    component = None if port.is_ground else system.components[port.component]
+    if isinstance(component, GearTrain):
+        point = shaft_point(component, port)
+        return component.shafts[point.shaft].position(point.z)
+    if isinstance(component, (Plate, Frame)) and port.place is not None:
+        return component.position(port.place)
+    return None
+
+
 def joint_place(system: System, joint: Joint) -> Vector | None:
-    """Where a joint meets its receiver: its `at`, else the position of the shaft station at one of its ends."""
+    """Where a joint meets its receiver: its `at`, else the place of one of its ends."""
     if joint.at is not None:
         return joint.at
-    for port in joint.between:
-        component = None if port.is_ground else system.components[port.component]
-        if isinstance(component, GearTrain):
-            point = shaft_point(component, port)
-            place = component.shafts[point.shaft].position(point.z)
-            return _moved(place, joint.offset, 1.0) if port is joint.between[0] else place
-    return None
+    receiver = _own_place(system, joint.between[1])
+    return _moved(_own_place(system, joint.between[0]), joint.offset, 1.0) if receiver is None else receiver
 
 
 def port_place(system: System, joint: Joint, port: Port) -> Vector | None:

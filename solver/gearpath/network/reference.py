@@ -14,13 +14,16 @@ conditioned in physical coordinates, and a reference must be better than what it
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.linalg
+import scipy.sparse
+import scipy.sparse.linalg
 from numpy.typing import NDArray
 
 from ..components import Structure
-from ..components.mobility import modal_damping_matrix
+from ..components.mobility import damping_matrix, modal_damping_matrix
 from ..numerics.arrays import Complex, Real
 from .assemble import Network
 from .power import ratio
@@ -42,13 +45,14 @@ class Reference:
 
 
 def reference_solution(network: Network, omega: Real) -> Reference:
-    """Solve the assembled machine at each angular frequency (rad/s), one pivoted factorisation a line."""
+    """Solve the assembled machine at each angular frequency (rad/s), one pivoted factorisation a line.
+
+    Raises AccuracyError where a plate or frame has modal damping, which has no matrix.
+    """
     parts = list(network.structures.values())
-    M = scipy.linalg.block_diag(*(s.mass for s in parts))
-    K = _extended_blocks([_exactly_free(s, s.stiffness) for s in parts])
-    H = _extended_blocks([s.loss_factor * _exactly_free(s, s.stiffness) for s in parts])
+    sparse = any(scipy.sparse.issparse(s.mass) for s in parts)
+    M, K, H, C = (_sparse_blocks if sparse else _extended_blocks)(parts)
     losses = np.concatenate([np.full(len(joint.dofs), joint.loss_factor) for joint in network.joints])
-    C = _extended_blocks([_exactly_free(s, modal_damping_matrix(s)) for s in parts])
     source, receiver = (
         np.vstack([getattr(joint, side) for joint in network.joints]) for side in ("source", "receiver")
     )
@@ -58,26 +62,22 @@ def reference_solution(network: Network, omega: Real) -> Reference:
         for name in ("stiffness", "damping")
     )
     load = next(item for item in network.loads if item.name == network.excitation)
-    n, n_p = len(M), len(B)
+    n_p, n = B.shape
     # the unknown forces are counted in units of a joint's stiffness times a unit motion: keeps the pivots sensible
     unit = max(float(abs(K_p).max()), 1.0)
     force, velocity = np.empty((n_p, len(omega)), complex), np.empty((n, len(omega)), complex)
     input_power, path_power = np.empty(len(omega)), np.empty((n_p, len(omega)))
     for k, w in enumerate(omega):
         Z = ((1.0 + 1j * losses[:, None]) * K_p + 1j * w * C_p) / unit
-        A = np.zeros((n + n_p, n + n_p), np.clongdouble)
-        A[:n, :n] = K + 1j * (H + w * C) - w**2 * M
-        A[:n, n:] = unit * B.T
-        A[n:, :n] = Z @ B
-        A[n:, n:] = -np.eye(n_p)
+        dynamic = K + 1j * (H + w * C) - w**2 * M
         b = np.zeros(n + n_p, complex)
         if load.mesh_displacement is None:
             b[:n] = load.column
         else:
             b[:n] = w**2 * load.column
             b[n:] = -Z @ (B @ load.mesh_displacement)
-        x = _solve_refined(A, b)  # powers are small beside |v||F| at low frequency: they are taken before rounding
-        g, v = unit * x[n:], 1j * w * x[:n]
+        x = (_solve_sparse if sparse else _solve_refined)(dynamic, unit * B.T, Z @ B, b)
+        g, v = unit * x[n:], 1j * w * x[:n]  # powers are small beside |v||F| at low frequency: taken before rounding
         input_power[k] = 0.5 * (load.column @ v).real * (w**2 if load.is_transmission_error else 1.0)
         if load.mesh_displacement is not None:  # the physical motion, and the power of e against the joints
             own = 1j * w * load.mesh_displacement
@@ -88,8 +88,9 @@ def reference_solution(network: Network, omega: Real) -> Reference:
     return Reference(force, velocity, input_power, path_power, ratio(path_power[carried].sum(axis=0), input_power))
 
 
-def _solve_refined(A: ExtendedComplex, b: Complex) -> ExtendedComplex:
-    """Solve A x = b with iterative refinement, residuals in extended precision."""
+def _solve_refined(dynamic: ExtendedComplex, right: Real, lower: Complex, b: Complex) -> ExtendedComplex:
+    """Solve [dynamic, right; lower, -I] x = b with iterative refinement, residuals in extended precision."""
+    A = np.block([[dynamic, right], [lower, -np.eye(len(lower))]])
     factors = scipy.linalg.lu_factor(A.astype(complex))
     x = np.zeros(b.shape, np.clongdouble)
     for _ in range(_REFINEMENTS):
@@ -100,6 +101,38 @@ def _solve_refined(A: ExtendedComplex, b: Complex) -> ExtendedComplex:
     return x
 
 
+def _solve_sparse(dynamic: Any, right: Real, lower: Complex, b: Complex) -> Complex:
+    """The same for sparse structures, in double precision."""
+    rows = [
+        [dynamic, scipy.sparse.csc_array(right)],
+        [scipy.sparse.csc_array(lower), -scipy.sparse.eye_array(len(lower))],
+    ]
+    A = scipy.sparse.csc_array(scipy.sparse.block_array(rows))
+    factors = scipy.sparse.linalg.splu(A)
+    x = factors.solve(b)
+    for _ in range(2):
+        x += factors.solve(b - A @ x)
+    return np.asarray(x)
+
+
+def _sparse_blocks(parts: Sequence[Structure]) -> tuple[Any, Any, Any, Any]:
+    """Block-diagonal M, K, eta K and C."""
+    matrices = [(s.mass, s.stiffness, s.loss_factor * s.stiffness, damping_matrix(s)) for s in parts]
+    return tuple(scipy.sparse.block_diag(blocks, format="csc") for blocks in zip(*matrices))
+
+
+def _extended_blocks(parts: Sequence[Structure]) -> tuple[Extended, Extended, Extended, Extended]:
+    """Block-diagonal M, K, eta K and C in extended precision, K and C exactly free of rigid-body motion."""
+    stiff = [_exactly_free(s, np.asarray(s.stiffness)) for s in parts]
+    damped = [_exactly_free(s, modal_damping_matrix(s)) for s in parts]
+    return (
+        _block_diagonal([np.asarray(s.mass).astype(np.longdouble) for s in parts]),
+        _block_diagonal(stiff),
+        _block_diagonal([s.loss_factor * K for s, K in zip(parts, stiff)]),
+        _block_diagonal(damped),
+    )
+
+
 def _exactly_free(structure: Structure, matrix: Real) -> Extended:
     """Stiffness or damping without the rounding that resists rigid-body motion, in extended precision.
 
@@ -107,7 +140,7 @@ def _exactly_free(structure: Structure, matrix: Real) -> Extended:
     inertia forces at low frequency; damping likewise would dissipate. K - M R R^T K and its transpose, R the
     mass-normalised rigid motions.
     """
-    M, K = structure.mass.astype(np.longdouble), matrix.astype(np.longdouble)
+    M, K = np.asarray(structure.mass).astype(np.longdouble), matrix.astype(np.longdouble)
     basis: list[Extended] = []
     for column in structure.rigid_modes.T.astype(np.longdouble):
         for _ in range(2):  # twice is enough to be orthogonal to rounding
@@ -122,7 +155,7 @@ def _exactly_free(structure: Structure, matrix: Real) -> Extended:
     return K - (K @ R) @ momentum.T
 
 
-def _extended_blocks(blocks: Sequence[Extended]) -> Extended:
+def _block_diagonal(blocks: Sequence[Extended]) -> Extended:
     """Block-diagonal matrix that keeps extended precision."""
     ends = np.cumsum([len(block) for block in blocks])
     out = np.zeros((int(ends[-1]),) * 2, np.longdouble)

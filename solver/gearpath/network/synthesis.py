@@ -68,6 +68,7 @@ class Synthesis:
         self._residues = [_Residues.of(self.P, block) for block in network.components.values()]
         K, C = network.interface_matrices()
         self._joints = np.vstack([C, K])
+        self._idle = ~(C.any(axis=1) | K.any(axis=1))  # a free direction carries nothing, whatever pivoting leaves
         self._losses = network.joint_losses()
         self._stiffness = network.eigenvalues + 1j * network.hysteresis if network.loss_factors else network.eigenvalues
 
@@ -95,6 +96,7 @@ class Synthesis:
         A[diagonal, diagonal] += 1.0
         relative = real_times_complex(P, free if own is None else free + own)
         g = solve_lines(A, self._joint_force(relative, omega))
+        g[self._idle] = 0.0
         elastic = free - response[:, None] * real_times_complex(P.T, g)
         for line in resonant:
             self._solve_coupled(float(omega[line]), g[:, :, line], elastic[:, :, line])

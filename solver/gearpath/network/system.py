@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from ..components import GearTrain, RigidBody
+from ..components import Frame, GearTrain, Plate, RigidBody
 from ..joints import Joint, Port
 
 Vector = tuple[float, float, float]
-Component = GearTrain | RigidBody
+Component = GearTrain | RigidBody | Plate | Frame
 
 
 @dataclass(frozen=True)
@@ -65,3 +65,5 @@ class System:
     actuators: Mapping[str, Actuator] = field(default_factory=dict)
     sensors: Mapping[str, Sensor] = field(default_factory=dict)
     loss_frequency: float = 1000.0  # Hz, where the viscous equivalents of joints' loss factors dissipate alike
+    band: float = 5000.0  # Hz, up to where reduced components must be exact
+    vectors: Mapping[str, int] = field(default_factory=dict)  # interior vectors of reduced components, where chosen

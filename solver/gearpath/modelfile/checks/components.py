@@ -3,13 +3,15 @@
 import numpy as np
 
 from ...errors import ModelError
-from ...numerics.arrays import Real
-from ..references import SAME, find, find_gear, length
+from ..references import SAME, find, length
+from ..structure_tables import FrameTable, PlateTable
 from ..tables import FileTable, InertiaTable, RigidBodyTable
-from ..train_tables import DiskTable, GearTrainTable, ShaftTable
+from ..train_tables import DiskTable, ShaftTable
 from ..wording import show
+from .meshes import check_meshes
+from .structures import check_frame, check_plate
 
-ROUNDED = 1e-3  # printed numbers are rounded: inertias and base radii may miss their conditions by this part
+ROUNDED = 1e-3  # printed numbers are rounded: inertias may miss their conditions by this part
 
 
 def check_components(file: FileTable) -> None:
@@ -21,11 +23,17 @@ def check_components(file: FileTable) -> None:
         if isinstance(component, RigidBodyTable):
             _check_inertia(component.inertia, f"{key}.inertia")
             continue
+        if isinstance(component, PlateTable):
+            check_plate(file, component, key)
+            continue
+        if isinstance(component, FrameTable):
+            check_frame(file, component, key)
+            continue
         if not component.shafts:
             raise ModelError(f"{key}.shafts", "there is no shaft", "give at least one shaft")
         for shaft_name, shaft in component.shafts.items():
             _check_shaft(file, shaft, f"{key}.shafts.{shaft_name}")
-        _check_meshes(file, component, f"{key}.meshes")
+        check_meshes(file, component, f"{key}.meshes")
 
 
 def _check_inertia(table: InertiaTable, key: str) -> None:
@@ -60,12 +68,13 @@ def _check_shaft(file: FileTable, shaft: ShaftTable, key: str) -> None:
         if getattr(shaft, part) is None:
             raise ModelError(f"{key}.{part}", "is missing", "give length and diameter in m, or sections")
     for k, section in enumerate(shaft.sections):
-        if section.inner >= section.outer:
-            raise ModelError(
-                f"{key}.sections.{k}.inner",
-                f"{section.inner:g} m is not below the outer diameter, {section.outer:g} m",
-                "give an inner diameter below the outer one, 0 for a solid shaft",
-            )
+        for outer, inner in zip(*section.diameters()):
+            if inner >= outer:
+                raise ModelError(
+                    f"{key}.sections.{k}.inner",
+                    f"{inner:g} m is not below the outer diameter, {outer:g} m",
+                    "give an inner diameter below the outer one, 0 for a solid shaft",
+                )
     seen: set[str] = set()
     for disk in shaft.disks:
         if disk.name in seen:
@@ -82,43 +91,4 @@ def _check_disk(disk: DiskTable, end: float, key: str) -> None:
             f"{key}.polar_inertia",
             f"{disk.polar_inertia:g} kg m^2 is above twice the diametral inertia, {disk.diametral_inertia:g}",
             "no body has such inertias: a thin disk has m r^2/2 about its axis and m r^2/4 about a diameter",
-        )
-
-
-def _check_meshes(file: FileTable, train: GearTrainTable, key: str) -> None:
-    """Refuse meshes within one shaft or of other shafts, and closed loops of meshes that leave no spin of their own."""
-    freely = "rz" not in file.dofs  # disks spin about their shafts, otherwise whole shafts turn
-    wheels = [f"{s}.{d.name}" for s, shaft in train.shafts.items() for d in shaft.disks]
-    columns = {wheel: k if freely else list(train.shafts).index(wheel.split(".")[0]) for k, wheel in enumerate(wheels)}
-    levers: list[Real] = []
-    for name, mesh in train.meshes.items():
-        gears = [find_gear(train, text, f"{key}.{name}.between") for text in mesh.between]
-        if gears[0][0] == gears[1][0]:
-            raise ModelError(
-                f"{key}.{name}.between",
-                f"{show(list(mesh.between))} lie on one shaft",
-                "mesh gears of two shafts",
-            )
-        row = np.zeros(len(wheels))
-        for text, radius in zip(mesh.between, mesh.base_radii):
-            row[columns[text]] += radius / sum(mesh.base_radii)
-        x1, x2 = (train.shafts[shaft].origin[0] for shaft, _ in gears)
-        levers.append(row if x1 <= x2 else -row)
-        if np.linalg.matrix_rank(np.array(levers), tol=1e-9) < len(levers):
-            raise ModelError(
-                f"{key}.{name}",
-                f"{show(list(mesh.between))} closes a loop of meshes that has no spin of its own",
-                "leave one mesh of the loop out and add its stiffness to another",
-            )
-        _check_base_radii(mesh.base_radii, abs(x2 - x1), f"{key}.{name}.base_radii")
-
-
-def _check_base_radii(radii: tuple[float, float], distance: float, key: str) -> None:
-    """The line of action along y touches both base circles of an external pair: their radii add up to |x2 - x1|."""
-    total = sum(radii)
-    if abs(total - distance) > ROUNDED * max(total, distance):
-        raise ModelError(
-            key,
-            f"the sum {total:.6g} m is not the distance {distance:.6g} m of the two shafts along x",
-            "give the base radii of both gears, or origins whose x differ by their sum (the line of action is along y)",
         )

@@ -1,11 +1,15 @@
 """Rules of the frequencies, the excitation, the actuators and the sensors."""
 
 from ...errors import ModelError
+from ...joints.joint import Vector
+from ..build_structures import build_plate
 from ..hints import hint
 from ..references import find, find_mesh, find_port
+from ..structure_tables import FrameTable, PlateTable
 from ..tables import ActuatorTable, ExcitationTable, FileTable
 from ..train_tables import GearTrainTable
 from ..wording import show
+from .structures import as_model_error
 
 _OF_MESH, _OF_POINT = ("displacement",), ("dof", "force", "at")
 
@@ -49,7 +53,12 @@ def _check_point(file: FileTable, table: ExcitationTable) -> None:
     if not table.dof:
         raise ModelError("excitation.dof", "is missing", f"give one of dofs: {', '.join(file.dofs)}")
     _check_active(file, table.dof, "excitation.dof")
-    if table.at is not None and port.shaft is not None:
+    component = file.components[port.component]
+    if isinstance(component, PlateTable) and port.place is None:
+        if table.at is None:
+            raise ModelError("excitation.at", "is missing", "give the driven place on the plate, or name a footprint")
+        check_on_plate(file, component, table.at, "excitation.at")
+    if table.at is not None and (port.shaft is not None or port.place is not None):
         raise ModelError(
             "excitation.at",
             f"{show(list(table.at))} is given beside {show(table.point)}, which has a place",
@@ -86,6 +95,10 @@ def _check_item(file: FileTable, table: ActuatorTable, key: str) -> GearTrainTab
     find("component", table.component, file.components, f"{key}.component")
     component = file.components[table.component]
     train = component if isinstance(component, GearTrainTable) else None
+    if isinstance(component, (PlateTable, FrameTable)):
+        _check_structure_point(file, component, table, key)
+        _check_active(file, table.dof, f"{key}.dof")
+        return None
     if train is None and isinstance(table.point, str):
         raise ModelError(
             f"{key}.point",
@@ -99,3 +112,21 @@ def _check_item(file: FileTable, table: ActuatorTable, key: str) -> GearTrainTab
         find_port(file, f"{table.component}.{table.point}", f"{key}.point")
     _check_active(file, table.dof, f"{key}.dof")
     return train
+
+
+def _check_structure_point(file: FileTable, component: PlateTable | FrameTable, table: ActuatorTable, key: str) -> None:
+    """A footprint, node or point of a plate."""
+    if isinstance(table.point, str):
+        find_port(file, f"{table.component}.{table.point}", f"{key}.point")
+    elif isinstance(component, FrameTable) or table.point is None:
+        problem = "is missing" if table.point is None else f"{show(list(table.point))} is not a place of a frame"
+        forms = "a node or plate.footprint" if isinstance(component, FrameTable) else "a footprint or [x, y, z]"
+        raise ModelError(f"{key}.point", problem, f"give {forms}")
+    else:
+        check_on_plate(file, component, table.point, f"{key}.point")
+
+
+def check_on_plate(file: FileTable, table: PlateTable, point: Vector, key: str) -> None:
+    """Refuse a point off the plate."""
+    plate = build_plate(file.materials, table)
+    as_model_error(lambda: plate.structure(("uz",), {}, {"point": point}), key)

@@ -1,13 +1,17 @@
 """Rules of joints: their ends, their place, their stiffness and damping."""
 
-from math import dist
+from math import dist, hypot
 
 from ...errors import ModelError
 from ...joints import Port
-from ..references import find_port, place_of
-from ..tables import FileTable, JointTable
+from ..build_structures import build_plate
+from ..joint_tables import BeamJointTable, JointTable, MatrixJointTable
+from ..references import beam_offset, find, find_port, place_of
+from ..structure_tables import PlateTable
+from ..tables import FileTable
 from ..wording import show
 from .matrices import check_matrix
+from .structures import as_model_error
 
 _MEETING = 1e-6  # two stations that a joint connects are one place, m
 
@@ -19,7 +23,11 @@ def check_joints(file: FileTable) -> None:
         ends = tuple(find_port(file, text, f"{key}.between") for text in joint.between)
         _check_ends(joint, ends, f"{key}.between")
         _check_place(file, joint, ends, key)
-        _check_impedance(file, joint, key)
+        if isinstance(joint, BeamJointTable):
+            _check_beam(file, joint, ends, key)
+        else:
+            _check_meeting(file, joint, ends, key)
+            _check_impedance(file, joint, key)
 
 
 def _check_ends(joint: JointTable, ends: tuple[Port, ...], key: str) -> None:
@@ -36,24 +44,64 @@ def _check_ends(joint: JointTable, ends: tuple[Port, ...], key: str) -> None:
 
 
 def _check_place(file: FileTable, joint: JointTable, ends: tuple[Port, ...], key: str) -> None:
-    places = [place for place in (place_of(file, port) for port in ends) if place is not None]
-    if places and joint.at is not None:
+    placed = [port for port in ends if place_of(file, port) is not None]
+    if placed and joint.at is not None and not (isinstance(joint, BeamJointTable) and ends[1] not in placed):
+        what = "a shaft station" if any(port.shaft for port in placed) else "a footprint or node"
         raise ModelError(
             f"{key}.at",
-            f"{show(list(joint.at))} is given beside a shaft station, which is the place of the joint",
+            f"{show(list(joint.at))} is given beside {what}, which is the place of the joint",
             "leave at out",
         )
-    if not places and joint.at is None:
+    if not placed and joint.at is None:
         raise ModelError(f"{key}.at", "is missing", "give the place of the joint as [x, y, z] in m")
+    for port in ends:
+        table = None if port.is_ground else file.components[port.component]
+        if isinstance(table, PlateTable) and port.place is None and joint.at is not None:
+            plate, at = build_plate(file.materials, table), joint.at
+            as_model_error(lambda plate=plate, at=at: plate.mesh([at]), f"{key}.at")  # type: ignore[misc]
+
+
+def _check_meeting(file: FileTable, joint: JointTable, ends: tuple[Port, ...], key: str) -> None:
+    places = [place for port in ends if (place := place_of(file, port)) is not None]
     if len(places) == 2 and dist(*places) > _MEETING:
+        shafts = all(port.shaft for port in ends)
         raise ModelError(
             f"{key}.between",
-            f"the stations {show(list(joint.between))} are {dist(*places):.3g} m apart",
-            "a joint has no length: move an origin so that they meet",
+            f"the {'stations' if shafts else 'ends'} {show(list(joint.between))} are {dist(*places):.3g} m apart",
+            "a joint has no length: move an origin so that they meet"
+            if shafts
+            else "a bearing or mount has no length: move one so that they meet, or use a beam_joint",
         )
 
 
-def _check_impedance(file: FileTable, joint: JointTable, key: str) -> None:
+def _check_beam(file: FileTable, joint: BeamJointTable, ends: tuple[Port, ...], key: str) -> None:
+    find("material", joint.material, file.materials, f"{key}.material")
+    if joint.inner_diameter >= joint.diameter:
+        raise ModelError(
+            f"{key}.inner_diameter",
+            f"{joint.inner_diameter:g} m is not below the diameter, {joint.diameter:g} m",
+            "give an inner diameter below the outer one, 0 for a solid beam",
+        )
+    known = place_of(file, ends[0]) is not None and (place_of(file, ends[1]) is not None or joint.at is not None)
+    if known and joint.offset is not None:
+        raise ModelError(
+            f"{key}.offset",
+            f"{show(list(joint.offset))} is given beside the places of both ends",
+            "leave offset out",
+        )
+    if not known and joint.offset is None:
+        raise ModelError(
+            f"{key}.offset", "is missing", "give the way from the source's end to the receiver's as [x, y, z] in m"
+        )
+    if hypot(*beam_offset(file, joint)) <= _MEETING:
+        raise ModelError(
+            f"{key}.between",
+            f"the ends {show(list(joint.between))} are at the same place",
+            "a beam joint bridges the way between its ends: move one, or use a bearing or mount",
+        )
+
+
+def _check_impedance(file: FileTable, joint: MatrixJointTable, key: str) -> None:
     if joint.damping is not None and joint.damping_time is not None:
         raise ModelError(
             f"{key}.damping_time",

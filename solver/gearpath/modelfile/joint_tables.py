@@ -1,0 +1,63 @@
+"""Tables of joints: bearings and mounts with matrices, and bolted joints as short beams."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from ..joints.joint import Matrix, Vector
+from .forms import Impedance
+from .numbers import Quantity, Row
+from .table import Table
+from .words import Pair, Text
+
+_PLACE = Row("place", Quantity("coordinate", "m", plausible=(-1e3, 1e3), slip="did you mean m, not mm?"), 3)
+_LOSS = Quantity("loss factor eta of (1 + i eta) K", at_least=0.0, at_most=2.0)
+_ENDS = Pair("two ends, source and receiver", ("gear_train.input@0.0", "casing"))
+
+
+def _diameter(description: str, **limits: float) -> Quantity:
+    slip = "did you mean m, not mm?"
+    return Quantity(description, "m", plausible=(0.0, 1.0), slip=slip, **limits)
+
+
+class MatrixJointTable(Table):
+    """A bearing or mount, massless, with stiffness and damping."""
+
+    kind: Annotated[Literal["bearing", "mount"], Field(description="Kind of joint")]
+    between: Annotated[tuple[str, str], _ENDS]
+    at: Annotated[Vector | None, _PLACE.named("place of the joint where neither of its ends gives it")] = None
+    stiffness: Annotated[float | Matrix, Impedance("stiffness", "N/m")]
+    damping: Annotated[float | Matrix | None, Impedance("damping", "N s/m")] = None
+    damping_time: Annotated[
+        float | None,
+        Quantity(
+            "time T of the damping C = T K",
+            "s",
+            at_least=0.0,
+            plausible=(0.0, 1.0),
+            slip="did you mean s, not us?",
+        ),
+    ] = None
+    loss_factor: Annotated[float, _LOSS] = 0.0
+
+
+class BeamJointTable(Table):
+    """A bolted joint: a short massless round beam between two places that lie apart (Eq. 18 to 21)."""
+
+    kind: Annotated[Literal["beam_joint"], Field(description="Bolted joint")]
+    between: Annotated[tuple[str, str], _ENDS]
+    at: Annotated[Vector | None, _PLACE.named("place of the receiver's end where neither end gives it")] = None
+    offset: Annotated[
+        Vector | None, _PLACE.named("way from the source's end to the receiver's, where their places do not give it")
+    ] = None
+    material: Annotated[str, Text("name of the material", "steel")]
+    diameter: Annotated[float, _diameter("diameter", above=0.0)]
+    inner_diameter: Annotated[float, _diameter("inner diameter", at_least=0.0)] = 0.0
+    shear_coefficient: Annotated[
+        float | None, Quantity("shear coefficient (left out: Cowper's)", above=0.0, at_most=1.0)
+    ] = None
+    loss_factor: Annotated[float, _LOSS] = 0.0
+
+
+JointTable = MatrixJointTable | BeamJointTable
+JOINTS = ("bearing", "mount", "beam_joint")
