@@ -48,10 +48,12 @@ UNIVERSAL = "darwin64/gearpath.dylib"  # both macOS libraries in one file
 class CustomBuildHook(BuildHookInterface):  # type: ignore[type-arg]
     """Hatchling calls this before it collects the files of a wheel (also of an editable one)."""
 
-    def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002
-        """Bring the runtime up to date; an sdist carries the C sources instead."""
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Bring the runtime up to date, and give a wheel the models; an sdist carries the C sources instead."""
         if self.target_name == "wheel":
             build()
+            if version != "editable":  # there the checkout's own folder is found
+                build_data["force_include"]["models"] = "gearpath/models"
 
 
 def build(runtime: Path = RUNTIME) -> bool:

@@ -1,4 +1,4 @@
-"""The command line: sweep, fmu, validate, report, schema.
+"""The command line: sweep, fmu, validate, report, paper, schema.
 
 Exit codes: 0 done, 1 a check failed, 2 bad input.
 """
@@ -120,6 +120,18 @@ def report(
         console.print_json({"report": written, "passed": passed, "fmus": [console.report_as_dict(r) for r in reports]})
     else:
         console.out.print(f"wrote {written}", markup=False)
+    raise typer.Exit(console.DONE if passed else console.CHECK_FAILED)
+
+
+@app.command()
+def paper(
+    output: Annotated[Path, typer.Option("--output", "-o", help="The page to write.")] = Path("paper.html"),
+    json: Json = False,
+) -> None:
+    """Compute the studies of Rook & Singh (1996) again: figures, tables and what holds, as one HTML page."""
+    from .study.paper import gallery
+
+    passed = gallery.run(output, json)
     raise typer.Exit(console.DONE if passed else console.CHECK_FAILED)
 
 

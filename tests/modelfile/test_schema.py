@@ -15,7 +15,11 @@ from gearpath.modelfile.tables import ActuatorTable, FileTable
 ROOT = Path(__file__).parents[2]
 HERE = Path(__file__).parent
 SCHEMA = json_schema()
-TABLES = {table.__name__: table for table in (*Table.__subclasses__(), *ActuatorTable.__subclasses__(), *PlateShape.__subclasses__())}
+TABLES = {
+    table.__name__: table
+    for base in (Table, ActuatorTable, PlateShape)
+    for table in base.__subclasses__()
+}
 VALIDATOR = Draft202012Validator(SCHEMA)
 BASE = (HERE / "base.toml").read_text(encoding="utf-8")
 

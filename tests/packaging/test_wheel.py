@@ -45,6 +45,7 @@ def test_wheel_holds_runtimes_sources_and_types(wheel):
     folders = ("linux64", "win64", "darwin64", "aarch64-linux", "aarch64-darwin", "x86_64-darwin")
     assert all(any(n.startswith(f"{inside}binaries/{folder}/") for n in names) for folder in folders)
     assert {f"{inside}sources/gp_model.c", f"{inside}pythonfmu/slave.py", "gearpath/py.typed"} <= names
+    assert "gearpath/models/gearbox.toml" in names
 
 
 def test_the_package_is_the_installed_one(installed):
@@ -73,6 +74,12 @@ def test_whole_main_job(installed):
         "gearbox-python.fmu",
         "report.html",
     }
+
+
+def test_paper(installed):
+    done = run(installed, "paper", "-o", "paper.html", "--json")
+    assert done.returncode == 0, done.stderr
+    assert (installed / "paper.html").stat().st_size > 1e6
 
 
 def test_schema(installed):

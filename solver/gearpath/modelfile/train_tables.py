@@ -25,9 +25,9 @@ def _length(description: str, longest: float = 100.0) -> Quantity:
     return Quantity(description, "m", above=0.0, plausible=(0.0, longest), slip=slip)
 
 
-def _angle(description: str, lowest: float) -> Quantity:
+def _angle(description: str, at_least: float | None = None) -> Quantity:
     slip = "did you mean rad, not degrees? (20 degrees are 0.349 rad)"
-    return Quantity(description, "rad", plausible=(lowest, 0.8), slip=slip)
+    return Quantity(description, "rad", at_least=at_least, plausible=(-0.8, 0.8), slip=slip)
 
 
 class MaterialTable(Table):
@@ -102,7 +102,7 @@ class MeshTable(Table):
         float | None, _angle("transverse pressure angle (left out: the line of action is y)", 0.0)
     ] = None
     helix_angle: Annotated[
-        float, _angle("helix angle on the base cylinder, positive where the first gear is right-hand", -0.8)
+        float, _angle("helix angle on the base cylinder, positive where the first gear is right-hand")
     ] = 0.0
     driving_torque: Annotated[
         str, Choice("sense about z of the torque that presses the first gear on the second", tuple(TORQUES))

@@ -33,4 +33,4 @@ def basis_of(structure: Structure, band: float, vectors: int | None) -> Modes:
                 f"{reduction.vectors} vectors leave the mobility of a component off by {worst:.1g} below {band:g} Hz; "
                 "give a lower frequency.stop, or choose the number of vectors and accept its error"
             )
-        count = min(3 * count // 2, _MOST)
+        count = min(2 * count, _MOST)

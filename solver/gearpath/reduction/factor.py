@@ -49,6 +49,11 @@ class Factor:
         if not np.linalg.norm((found - known) / self._scale) < _DIGITS * np.linalg.norm(known / self._scale):
             raise AccuracyError(_SINGULAR)
 
+    @property
+    def entries(self) -> int:
+        """Stored entries of L and U."""
+        return int(self._lu.nnz) if self.size else 0
+
     def solve(self, right: Real) -> Real:
         """K^-1 right, (n, m), with one step of iterative refinement."""
         out = np.empty(right.shape)

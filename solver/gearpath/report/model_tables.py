@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 
-from ..components import GearTrain
+from ..components import GearTrain, Section
 from ..components.dofs import is_rotation
 from ..joints import Joint, Port
 from ..joints.joint import Matrix
@@ -40,7 +40,7 @@ def shaft_table(system: System) -> Table:
     rows = []
     for train, part in _trains(system):
         for name, shaft in part.shafts.items():
-            bores = [f"{given(s.outer)}" + (f" / {given(s.inner)}" if s.inner else "") for s in shaft.sections]
+            bores = [_diameters(section) for section in shaft.sections]
             rows.append(
                 [
                     f"{train}.{name}",
@@ -57,6 +57,12 @@ def shaft_table(system: System) -> Table:
             )
     head = ["shaft", "beam", "length, m", "diameter (bore), m", "first end (x, y, z), m", "elements"]
     return table("Shafts", [*head, "E, Pa", "ν", "ρ, kg/m³", "κ"], rows, text=2)
+
+
+def _diameters(section: Section) -> str:
+    """Outer / inner diameter, of a taper at both ends."""
+    ends = [section.diameters(xi) for xi in ((0.0, 1.0) if section.tapered else (0.0,))]
+    return " to ".join(given(outer) + (f" / {given(inner)}" if inner else "") for outer, inner in ends)
 
 
 def disk_table(system: System) -> Table:
@@ -80,11 +86,14 @@ def mesh_table(system: System) -> Table:
             " – ".join(".".join(gear) for gear in mesh.between),
             given(mesh.stiffness),
             " / ".join(given(r) for r in mesh.base_radii),
+            "line of action y" if mesh.pressure_angle is None else given(mesh.pressure_angle),
+            given(mesh.helix_angle),
         ]
         for train, part in _trains(system)
         for name, mesh in part.meshes.items()
     ]
-    return table("Gear meshes", ["mesh", "between", "stiffness, N/m", "base radii, m"], rows, text=2)
+    head = ["mesh", "between", "stiffness, N/m", "base radii, m", "pressure angle, rad", "base helix angle, rad"]
+    return table("Gear meshes", head, rows, text=2)
 
 
 def matrix_table(system: System) -> Table:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,19 +38,30 @@ def write_report(
     be written.
     """
     target = Path(path)
-    plotly_js, environment = _libraries()
-    _writable(target)
+    render = renderer(target)
     results = compute(model, progress)
     progress("report: page")
-    html: str = environment.get_template("template.html.j2").render(
-        **_content(model, results, validations),
-        plotly_js=plotly_js,
-        style=(_HERE / "style.css").read_text(encoding="utf-8"),
-        script=(_HERE / "plots.js").read_text(encoding="utf-8"),
-    )
-    write_text(target, html)
+    render("template.html.j2", _content(model, results, validations))
     progress(f"report: {target}")
     return target
+
+
+def renderer(target: Path) -> Callable[[str, Mapping[str, Any]], None]:
+    """Check libraries and target before the work; what comes back writes the page of a template and its content."""
+    plotly_js, environment = _libraries()
+    _writable(target)
+
+    def render(template: str, content: Mapping[str, Any]) -> None:
+        html: str = environment.get_template(template).render(
+            **content,
+            version=__version__,
+            plotly_js=plotly_js,
+            style=(_HERE / "style.css").read_text(encoding="utf-8"),
+            script=(_HERE / "plots.js").read_text(encoding="utf-8"),
+        )
+        write_text(target, html)
+
+    return render
 
 
 def figure_data(drawn: Sequence[Figure]) -> str:
@@ -75,7 +86,6 @@ def _content(model: Model, results: Results, validations: Sequence[ValidationRep
     bode = bode_figures(validations, results.network)
     return {
         "title": model.name,
-        "version": __version__,
         "computed": findings.computed(results),
         "findings": findings.findings(results, validations),
         "key_figures": findings.key_figures(results, validations),

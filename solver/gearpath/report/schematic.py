@@ -19,12 +19,13 @@ from ..numerics.arrays import Real
 from .solids import INK, cylinder, disk, outline, polygon, to_page
 
 if TYPE_CHECKING:
-    from ..components.gear_train import Shaft
+    from ..components import Shaft
     from ..modelfile import Model
 
 FORCE, MOMENT, GREY = "#0072b2", "#d55e00", "#6b7783"
 STEEL, BRASS, BEARING, CASING = "#c3ccd6", "#d9c08a", "#5aa2d0", "#e9edf1"
 FACE = 0.024  # m, drawn width of a gear; the model has none
+SLICES = 12  # of a tapered section
 
 
 def draw(axes: Any, model: Model) -> None:
@@ -100,9 +101,11 @@ def _axle(axes: Any, train: GearTrain, name: str, shaft: Shaft, bearings: Sequen
     parts: list[tuple[float, float, float, str, int]] = []  # from z, to z, radius, colour, teeth
     at = z0
     for section in shaft.sections:
-        parts.append((at, at + section.length, section.outer / 2.0, STEEL, 0))
-        at += section.length
-    thickest = max(section.outer for section in shaft.sections) / 2.0
+        count = SLICES if section.tapered else 1
+        for piece in (section.part(k / count, (k + 1) / count) for k in range(count)):
+            parts.append((at, at + piece.length, piece.diameters(0.5)[0] / 2.0, STEEL, 0))
+            at += piece.length
+    thickest = max(max(section.diameters(0.0)[0], section.diameters(1.0)[0]) for section in shaft.sections) / 2.0
     parts += [(place[2] - 0.006, place[2] + 0.006, 1.75 * thickest, BEARING, 0) for place in own]
     for gear, radius in _gears(train, name):
         z = z0 + shaft.disk(gear).z
@@ -113,7 +116,7 @@ def _axle(axes: Any, train: GearTrain, name: str, shaft: Shaft, bearings: Sequen
         if there:
             _, _, radius, colour, teeth = max(there, key=lambda part: part[2])
             cylinder(axes, (x, y), low, high, outline(radius, teeth), colour)
-    disk(axes, (x, y), cuts[-1], outline(shaft.sections[-1].outer / 2.0), STEEL)
+    disk(axes, (x, y), cuts[-1], outline(shaft.sections[-1].diameters(1.0)[0] / 2.0), STEEL)
 
 
 def _gears(train: GearTrain, shaft: str) -> Iterator[tuple[str, float]]:
@@ -161,14 +164,17 @@ def _note_bearing(axes: Any, name: str, place: Real, tray: _Tray) -> None:
 def _note_meshes(axes: Any, train: GearTrain) -> None:
     """Names of the gears on their faces, and the transmission error along the line of action."""
     for mesh in train.meshes.values():
-        a, b = (np.array(train.shafts[s].position(train.shafts[s].disk(d).z)) for s, d in mesh.between)
+        first, second = (train.shafts[s].position(train.shafts[s].disk(d).z) for s, d in mesh.between)
+        a, b = np.array(first), np.array(second)
         contact = a + (b - a) * mesh.base_radii[0] / sum(mesh.base_radii)
         near_first = np.sign(b[0] - a[0])
         for (_, gear), centre, radius, side in zip(mesh.between, (a, b), mesh.base_radii, (-near_first, near_first)):
             at = to_page(centre + np.array([0.25 * side * radius, 0.66 * side * radius, FACE / 2]))
             axes.annotate(_spoken(gear), at, ha="center", va="center", fontsize=8)
         reach = 1.9 * max(mesh.base_radii)
-        low, high = (to_page(contact + np.array([0.0, h, FACE / 2])) for h in (-0.2 * reach, reach))
+        n = mesh.line_of_action(first, second)
+        front = np.array([0.0, 0.0, FACE / 2])
+        low, high = (to_page(contact + h * n + front) for h in (-0.2 * reach, reach))
         axes.annotate("", high, low, arrowprops={"arrowstyle": "<->", "color": MOMENT, "lw": 1.8})
         axes.update_datalim([high + np.array([0.0, 44.0])])
         words = "transmission error\nalong the line\nof action"

@@ -1,0 +1,1 @@
+"""The paper's studies on its gearbox: every figure computed again, every statement judged by computed figures."""
