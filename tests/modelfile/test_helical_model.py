@@ -8,6 +8,7 @@ import pytest
 import gearpath as gp
 from gearpath.components import DOFS, Section
 from gearpath.errors import ModelError
+from gearpath.fmu.python_design import design_parameters
 from gearpath.network.assemble import assemble
 from gearpath.network.natural import natural_frequencies
 from gearpath.network.power import power_flow
@@ -100,6 +101,9 @@ def test_tapered_sections_of_the_file(model):
     shaft = "components.gear_train.shafts.input"
     alike = model.replace({f"{shaft}.sections": [{"length": 0.206, "outer": [0.03, 0.03]}], f"{shaft}.elements": 2})
     assert alike.system.components["gear_train"].shafts["input"].sections == (Section(0.206, 0.03),)
+    cone = alike.replace({f"{shaft}.sections": [{"length": 0.206, "outer": [0.03, 0.04]}]})
+    offered = [{parameter.name for parameter in design_parameters(m.system)} for m in (alike, cone)]
+    assert offered[0] - offered[1] == {"gear_train.input.diameter"}  # a cone has no one diameter to set
 
 
 def test_system_is_plain_data(model):

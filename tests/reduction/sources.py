@@ -9,6 +9,7 @@ from systems import random_gearbox
 
 from gearpath.components import Structure
 from gearpath.network.assemble import assemble
+from gearpath.reduction import craig_bampton, free_interface, hold, interface_rows
 
 NODE_COORDINATES = 34  # of one shaft of the default gearbox: uy, rx at 17 nodes
 # Guyan by a factor of four, 69 to 17: uy at every fourth node of both shafts, rx at bearings and gears, and p
@@ -36,6 +37,17 @@ def sparse(structure):
     """The same structure with sparse matrices."""
     M, K = (scipy.sparse.csc_array(matrix) for matrix in (structure.mass, structure.stiffness))
     return replace(structure, mass=M, stiffness=K)
+
+
+def bampton(structure, count):
+    """Craig-Bampton with at most as many modes as the interior has."""
+    held = hold(structure, interface_rows(structure))
+    return craig_bampton(structure, min(count, len(held.inner)), held=held)
+
+
+def free(structure, count, residual):
+    """Free-interface modes, at most as many as there are."""
+    return free_interface(structure, min(count, structure.size - structure.rigid_modes.shape[1]), residual)
 
 
 def bordered_static(K, rows, motion):

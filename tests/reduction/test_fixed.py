@@ -5,7 +5,7 @@ import pytest
 import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sources import KEPT, chain, random_source
+from sources import KEPT, bampton, chain, free, random_source
 
 from gearpath.components import modes
 from gearpath.errors import InputError
@@ -25,9 +25,9 @@ METHODS = {
     "constraint modes": lambda structure, _: constraint_modes(structure),
     "lanczos": lanczos,
     "mesh start": lambda structure, count: lanczos(structure, count, start="mesh"),
-    "craig-bampton": craig_bampton,
-    "free": lambda structure, count: free_interface(structure, count, residual=False),
-    "residual": lambda structure, count: free_interface(structure, count, residual=True),
+    "craig-bampton": bampton,
+    "free": lambda structure, count: free(structure, count, residual=False),
+    "residual": lambda structure, count: free(structure, count, residual=True),
 }
 STATIC = {name: METHODS[name] for name in ("constraint modes", "lanczos", "craig-bampton")}
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sources import KEPT
+from sources import KEPT, bampton, free
 from systems import random_gearbox
 
 from gearpath.network.assemble import assemble, to_modes
@@ -95,8 +95,8 @@ def test_power_balance_and_passivity(seed, bearings, vectors, name):
     network = assemble(random_gearbox(seed, bearings))
     methods = {
         "lanczos": lambda s: lanczos(s, vectors),
-        "bampton": lambda s: craig_bampton(s, min(vectors, 2)),
-        "free": lambda s: free_interface(s, min(vectors, 2), residual=True),
+        "bampton": lambda s: bampton(s, vectors),
+        "free": lambda s: free(s, vectors, residual=True),
     }
     flow = power_flow(reduced(network, "train", methods[name]), GRID[::25])
     np.testing.assert_allclose(flow.dissipated_power.sum(axis=0), flow.input_power, rtol=1e-8)
