@@ -30,8 +30,8 @@ def structure():
 
 def mobility(structure, chosen, omega):
     rows = np.vstack(list(structure.ports.values()))
-    shapes = rows @ basis.shapes
-    h = modal_response((1 + 0.01j) * basis.eigenvalues, np.zeros_like(basis.eigenvalues), omega)
+    shapes = rows @ chosen.shapes
+    h = modal_response((1 + 0.01j) * chosen.eigenvalues, np.zeros_like(chosen.eigenvalues), omega)
     return np.einsum("mr,rf,kr->fmk", shapes, h, shapes), mobility_direct(structure, rows, omega)
 
 
