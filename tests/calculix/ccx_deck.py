@@ -29,7 +29,7 @@ class Part:
 class Deck:
     """Bodies of one elastic constant pair, free in space, and groups of nodes made rigid; SI units.
 
-    Bricks are C3D20R: quadratic with reduced integration, the element that CalculiX' manual recommends for bending.
+    Bricks are C3D20R: quadratic, with reduced integration against locking in thin plates.
     """
 
     youngs_modulus: float

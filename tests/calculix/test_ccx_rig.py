@@ -1,7 +1,7 @@
 """The paper's test rig by CalculiX, in solid elements, against our plates, frames and joints.
 
-Lowest natural frequencies, free in space. Aims: plates within 1 %, source and assembly within 2 %. All are held to 1 %
-here: the two differ by 0.7 % at most, from the end effects that beams and plates leave out.
+Lowest natural frequencies, free in space, held to 1 %: they differ by 0.7 % at most, from our grids and from the end
+effects that beams leave out. Footprints of half the size change them by 2 to 3 %, joints as thick as the shafts by 8 %.
 """
 
 from pathlib import Path
