@@ -158,3 +158,52 @@ def test_inputs_named_twice_or_not_at_all_are_refused(model):
         gp.power_matrices(model, [100.0], ["mesh.force", "mesh.force"])
     with pytest.raises(gp.InputError, match="name at least one"):
         gp.power_matrices(model, [100.0], [])
+
+
+def test_torque_ripple_on_a_freely_spinning_gear():
+    """A torque on the pinion against the same machine whose shafts turn: light shafts, torsionally rigid.
+
+    In the planar model it presses on p with m_e r1 / J1; with rz active it is a moment on the gear's node.
+    """
+    ripple = {"actuators": {"ripple": {"component": "gear_train", "point": "input.pinion", "dof": "rz"}}}
+    base = gp.load("models/gearbox.toml").to_dict()
+    planar = gp.Model.from_dict({**base, **ripple})
+    J1, J2, r1, r2 = 1.8884e-3, 1.9655e-3, 0.04975, 0.05025
+    m_e = 1 / (r1**2 / J1 + r2**2 / J2)
+    f = [100.0, 700.0, 2200.0]
+    outputs = ["bearing_1.force_uy", "bearing_4.force_rx", "casing.velocity_uy"]
+    by_torque = gp.frequency_response(planar, f, outputs, "actuators.ripple")
+    by_force = gp.frequency_response(planar, f, outputs, "mesh.force")
+    np.testing.assert_allclose(by_torque.values, m_e * r1 / J1 * by_force.values, rtol=1e-9)
+
+
+def test_torque_ripple_where_the_shafts_twist():
+    """The planar torque is the limit of shafts that twist with hardly any inertia about their axes."""
+    ripple = {"actuators": {"ripple": {"component": "gear_train", "point": "input.pinion", "dof": "rz"}}}
+    base = gp.load("models/gearbox.toml").to_dict()
+    both = []
+    for dofs in (["uy", "rx"], ["uy", "rx", "rz"]):
+        data = {**base, **ripple, "dofs": dofs}
+        data["materials"] = {"steel": {**base["materials"]["steel"], "density": 100.0}}
+        data["joints"] = {
+            name: joint
+            if joint["kind"] == "mount"
+            else {**joint, "stiffness": [[*row, 0.0] for row in joint["stiffness"]] + [[0.0, 0.0, 0.0]]}
+            if "rz" in dofs
+            else joint
+            for name, joint in base["joints"].items()
+        }
+        model = gp.Model.from_dict(data)
+        both.append(gp.frequency_response(model, [100.0, 700.0], ["bearing_1.force_uy"], "actuators.ripple").values)
+    np.testing.assert_allclose(both[0], both[1], rtol=2e-3)
+
+
+def test_spin_sensor_reads_the_gear():
+    """theta_1 = m_e r1 / J1 p where no torque drives both gears: the mesh's own transmission error."""
+    base = gp.load("models/gearbox.toml").to_dict()
+    spin = {"component": "gear_train", "point": "input.pinion", "dof": "rz", "quantity": "velocity"}
+    model = gp.Model.from_dict({**base, "sensors": {"spin": spin}})
+    H = gp.frequency_response(model, [150.0, 900.0], ["sensors.spin", "mesh.velocity"], "mesh.transmission_error")
+    J1, r1 = 1.8884e-3, 0.04975
+    m_e = 1 / (r1**2 / J1 + 0.05025**2 / 1.9655e-3)
+    np.testing.assert_allclose(H.values[:, 0, 0], m_e * r1 / J1 * H.values[:, 1, 0], rtol=1e-9)

@@ -13,6 +13,8 @@ from .shaft import Shaft, ShaftPoint
 from .shaft_mesh import ShaftMesh, mesh_shaft
 from .structure import MeshMotion, Structure
 
+_SAME = 1e-9  # a point closer to a disk than this part of the shaft length is on it
+
 
 @dataclass(frozen=True)
 class GearTrain:
@@ -35,7 +37,8 @@ class GearTrain:
 
         stations are ports that get a node of their own (bearings); probes are ports read from the shape functions of
         the element they fall in (sensors, forces). Where rz is not among `dofs` each disk spins freely about its
-        shaft and only p = sum(r cos(beta_b) theta) of each mesh is kept as a coordinate, along its line of action.
+        shaft and only p = sum(r cos(beta_b) theta) of each mesh is kept as a coordinate, along its line of action;
+        points on a disk then read its spin as rz.
         """
         shaft_dofs = self._shaft_dofs(dofs)
         grids = {
@@ -63,6 +66,8 @@ class GearTrain:
             K += mesh.stiffness * np.outer(b, b)
         active = np.array([dof in dofs for dof in DOFS])[:, None]
         ports = {name: active * row(point) for name, point in {**stations, **(probes or {})}.items()}
+        for name, point in {**stations, **(probes or {})}.items() if spins else ():
+            ports[name][5] = self._spin_of_disk(point, M)
         rigid = self._rigid_modes(grids, starts, size, spins, deflections)
         return Structure(M, K, rigid, self.modal_damping, ports, self._mesh_motions(M, grids, starts, spins))
 
@@ -99,13 +104,36 @@ class GearTrain:
 
         For one mesh m_e = 1/(r1^2/J1 + r2^2/J2) / cos^2(beta_b), the levers being r cos(beta_b).
         """
-        disks = {(s, disk.name): disk.polar_inertia for s, shaft in self.shafts.items() for disk in shaft.disks}
+        T = self._levers()
+        mobility = (T / np.array(list(self._disks().values()))) @ T.T
+        return np.asarray(scipy.linalg.inv((mobility + mobility.T) / 2.0))
+
+    def _spin_of_disk(self, point: ShaftPoint, M: Real) -> Real:
+        """Row of theta_z of the disk at a point, (n,): J^-1 T^T M_p p (`_spin_mass`); zero where there is none.
+
+        It is the spin that moves the meshes; that of all gears rolling together is free and takes no part. A torque
+        on the disk presses on p by the same row.
+        """
+        row = np.zeros(len(M))
+        for disk in self.shafts[point.shaft].disks:
+            if abs(disk.z - point.z) <= _SAME * self.shafts[point.shaft].length:
+                levers = self._levers()[:, list(self._disks()).index((point.shaft, disk.name))]
+                count = len(levers)
+                row[-count:] = levers / disk.polar_inertia @ M[-count:, -count:]
+        return row
+
+    def _disks(self) -> dict[tuple[str, str], float]:
+        """Polar inertia of every disk."""
+        return {(s, disk.name): disk.polar_inertia for s, shaft in self.shafts.items() for disk in shaft.disks}
+
+    def _levers(self) -> Real:
+        """T of the mesh deformations p = T theta, (meshes, disks)."""
+        disks = list(self._disks())
         T = np.zeros((len(self.meshes), len(disks)))
         for k, mesh in enumerate(self.meshes.values()):
             for gear, (_, row) in zip(mesh.between, self._gears(mesh)):
-                T[k, list(disks).index(gear)] += row[5]
-        mobility = (T / np.array(list(disks.values()))) @ T.T
-        return np.asarray(scipy.linalg.inv((mobility + mobility.T) / 2.0))
+                T[k, disks.index(gear)] += row[5]
+        return T
 
     def _rigid_modes(
         self,

@@ -1,6 +1,7 @@
 """Rules of the frequencies, the excitation, the actuators and the sensors."""
 
 from ...errors import ModelError
+from ...joints import Port
 from ...joints.joint import Vector
 from ..build_structures import build_plate
 from ..hints import hint
@@ -52,7 +53,7 @@ def _check_point(file: FileTable, table: ExcitationTable) -> None:
     port = find_port(file, table.point, "excitation.point")
     if not table.dof:
         raise ModelError("excitation.dof", "is missing", f"give one of dofs: {', '.join(file.dofs)}")
-    _check_active(file, table.dof, "excitation.dof")
+    _check_active(file, table.dof, "excitation.dof", port)
     component = file.components[port.component]
     if isinstance(component, PlateTable) and port.place is None:
         if table.at is None:
@@ -66,7 +67,12 @@ def _check_point(file: FileTable, table: ExcitationTable) -> None:
         )
 
 
-def _check_active(file: FileTable, dof: str, key: str) -> None:
+def _check_active(file: FileTable, dof: str, key: str, port: Port | None = None) -> None:
+    """Refuse an inactive degree of freedom; a gear that meshes turns even where shafts do not twist."""
+    if dof == "rz" and port is not None and port.disk is not None:
+        train = file.components[port.component]
+        if isinstance(train, GearTrainTable) and train.meshes:
+            return
     if dof not in file.dofs:
         raise ModelError(key, f"{show(dof)} is not among the active dofs", hint("", file.dofs))
 
@@ -109,9 +115,11 @@ def _check_item(file: FileTable, table: ActuatorTable, key: str) -> GearTrainTab
         if not isinstance(table.point, str):
             problem = "is missing" if table.point is None else f"{show(list(table.point))} is not on a shaft"
             raise ModelError(f"{key}.point", problem, 'give "shaft@z" (m from its first end) or "shaft.disk"')
-        find_port(file, f"{table.component}.{table.point}", f"{key}.point")
+        port = find_port(file, f"{table.component}.{table.point}", f"{key}.point")
+        _check_active(file, table.dof, f"{key}.dof", port)
+        return train
     _check_active(file, table.dof, f"{key}.dof")
-    return train
+    return None
 
 
 def _check_structure_point(file: FileTable, component: PlateTable | FrameTable, table: ActuatorTable, key: str) -> None:
