@@ -5,13 +5,18 @@ Exit codes: 0 done, 1 a check failed, 2 bad input.
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from . import __version__, console
+# set before numpy is loaded: of many small solves each is slower with several threads than with one
+for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+
+from . import __version__, console  # noqa: E402
 
 app = typer.Typer(
     name="gearpath",
