@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from systems import default_gear_train, default_gearbox
+from systems import default_gear_train, default_gearbox, random_gearbox
 
 from gearpath.components import Section, ShaftPoint, modes
 from gearpath.errors import AccuracyError
@@ -72,3 +72,13 @@ def test_a_declared_motion_that_deforms_is_refused(offset):
     assert uy @ motion == 1.0
     with pytest.raises(AccuracyError, match="1 of the 5 rigid-body modes that the structure declares deform it"):
         modes(replace(structure, rigid_modes=np.hstack([structure.rigid_modes, motion])))
+
+
+@pytest.mark.parametrize("seed", [282, 487])
+def test_close_modes_stay_orthogonal(seed):
+    """Modes 4e-4 apart of trains whose highest eigenvalue is 1e5 times theirs."""
+    structure = assemble(random_gearbox(seed, 3, helical=True)).structures["train"]
+    basis = modes(structure)
+    elastic = basis.frequencies[basis.frequencies > 0.0]
+    assert np.min(np.diff(elastic[:8]) / elastic[:7]) < 1e-3
+    np.testing.assert_allclose(basis.shapes.T @ structure.mass @ basis.shapes, np.eye(structure.size), atol=1e-12)

@@ -7,7 +7,7 @@ import scipy.linalg
 import scipy.sparse
 from systems import random_gearbox
 
-from gearpath.components import Structure
+from gearpath.components import GearTrain, Material, Section, Shaft, ShaftPoint, Structure
 from gearpath.network.assemble import assemble
 from gearpath.reduction import craig_bampton, free_interface, hold, interface_rows
 
@@ -31,6 +31,13 @@ def chain(n=12, port=None):
     rows = np.zeros((6, n))
     rows[1] = np.eye(n)[0] if port is None else port
     return Structure(np.eye(n), K, np.ones((n, 1)), 0.01, {"end": rows})
+
+
+def beam_shaft(elements):
+    """A free steel shaft in the plane, 1 m long and 10 mm thick, with a port at its first end."""
+    steel = Material(2.07e11, 0.3, 7850.0)
+    train = GearTrain({"it": Shaft(steel, (0.0, 0.0, 0.0), (Section(1.0, 0.01),), 0.886, (elements,))}, {})
+    return train.structure(("uy", "rx"), {"end": ShaftPoint("it", 0.0)})
 
 
 def sparse(structure):

@@ -12,6 +12,7 @@ from .structure import Structure
 _NULL = 1e-11  # residual |K R| / |K||R| of a declared rigid mode; rounding leaves 1e-14
 _FLOOR = 16.0 * np.finfo(float).eps  # elastic eigenvalues below this part of the largest lose digits to its rounding
 _SKEW = 1e-6  # of the elastic modes' modal mass matrix: a mode that is one of the others shows here
+_CLOSE = 1e-2  # modes whose eigenvalues differ by less (relatively) are kept orthogonal by force
 _CLUSTER = 1e-4  # modes whose eigenvalues differ by less (relatively) are separated among themselves
 
 
@@ -75,9 +76,12 @@ def _sharpen(shapes: Real, K: Real, M: Real) -> tuple[Real, Real]:
         S, G = shapes.T @ (K @ shapes), shapes.T @ (M @ shapes)
         values = np.diag(S) / np.diag(G)
         gap = values[None, :] - values[:, None]
-        apart = abs(gap) > _CLUSTER * np.maximum(values[None, :], values[:, None])
+        larger = np.maximum(values[None, :], values[:, None])
+        apart = abs(gap) > _CLUSTER * larger
         E = np.where(apart, (S - values[None, :] * G) / np.where(apart, gap, 1.0), -G / 2.0)
         np.fill_diagonal(E, (1.0 - np.diag(G)) / 2.0)
+        # rounding over a small gap must not spoil orthogonality: E + E^T = I - G
+        E -= np.where(abs(gap) < _CLOSE * larger, (E + E.T + G - np.eye(len(G))) / 2.0, 0.0)
         shapes = shapes + shapes @ E
         shapes = shapes[:, np.argsort(values)]
         ends = np.flatnonzero(np.diff(np.sort(values)) > _CLUSTER * np.sort(values)[1:]) + 1
