@@ -34,10 +34,10 @@ def chain(n=12, port=None):
 
 
 def beam_shaft(elements):
-    """A free steel shaft in the plane, 1 m long and 10 mm thick, with a port at its first end."""
+    """A free steel shaft in the plane, 1 m long and 10 mm thick, with a port at each end."""
     steel = Material(2.07e11, 0.3, 7850.0)
     train = GearTrain({"it": Shaft(steel, (0.0, 0.0, 0.0), (Section(1.0, 0.01),), 0.886, (elements,))}, {})
-    return train.structure(("uy", "rx"), {"end": ShaftPoint("it", 0.0)})
+    return train.structure(("uy", "rx"), {"end": ShaftPoint("it", 0.0), "other": ShaftPoint("it", 1.0)})
 
 
 def sparse(structure):

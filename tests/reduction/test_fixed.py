@@ -5,7 +5,7 @@ import pytest
 import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sources import KEPT, bampton, chain, free, random_source
+from sources import KEPT, bampton, beam_shaft, chain, free, random_source
 
 from gearpath.components import modes
 from gearpath.errors import InputError
@@ -77,6 +77,25 @@ def test_statics_of_the_supported_source_are_exact(source, name):
     reduced = T @ np.linalg.solve(found.stiffness + T.T @ support @ T, T.T @ L.T)
     deviation = abs(L @ (reduced - exact)) / np.sqrt(np.outer(np.diag(L @ exact), np.diag(L @ exact)))
     assert deviation.max() < 1e-8
+
+
+@pytest.mark.parametrize("elements", [40, 1000])
+def test_a_finely_divided_shaft_keeps_its_lowest_modes(elements):
+    """Free-free slender beam, beta L = 4.7300, 7.8532, ...: element stiffness up to 1e9 times that of the shaft."""
+    shaft = beam_shaft(elements)
+    found = reduced_modes(shaft, lanczos(shaft, 12))
+    assert np.all(found.eigenvalues[:2] == 0.0)
+    roots = np.array([4.730040744862704, 7.853204624095838, 10.995607838001671])
+    area, inertia = np.pi * 0.01**2 / 4, np.pi * 0.01**4 / 64
+    thin = roots**2 * np.sqrt(2.07e11 * inertia / (7850.0 * area)) / (2 * np.pi)
+    np.testing.assert_allclose(found.frequencies[2:5], thin, rtol=2.5e-3)  # shear and rotary inertia lower them
+    assert np.all(found.frequencies[2:5] < thin)
+
+
+def test_spins_that_the_boundary_holds_add_nothing(source):
+    """With p and both gears among the boundary the spin d is a combination of constraint modes."""
+    assert constraint_modes(source, np.eye(69)[KEPT]).size == 17
+    assert constraint_modes(source).size == 10
 
 
 def test_fixed_interface_modes_of_a_chain_are_those_of_the_string():

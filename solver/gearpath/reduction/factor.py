@@ -55,14 +55,9 @@ class Factor:
         return int(self._lu.nnz) if self.size else 0
 
     def solve(self, right: Real) -> Real:
-        """K^-1 right, (n, m), with one step of iterative refinement."""
+        """K^-1 right, (n, m)."""
         out = np.empty(right.shape)
         for start in range(0, right.shape[1] if self.size else 0, _BLOCK):
-            b = right[:, start : start + _BLOCK]
-            x = self._once(b)
-            out[:, start : start + _BLOCK] = x + self._once(b - self.matrix @ x)
+            part = slice(start, start + _BLOCK)
+            out[:, part] = self._scale[:, None] * self._lu.solve(self._scale[:, None] * right[:, part])
         return out
-
-    def _once(self, right: Real) -> Real:
-        scale = self._scale[:, None]
-        return np.asarray(scale * self._lu.solve(scale * right))

@@ -1,6 +1,6 @@
 """What a reduction is: a basis, the matrices on it, and the ways back into the network."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,8 @@ from ..errors import AccuracyError
 from ..numerics.arrays import Real
 from ..numerics.lanczos import independent
 
-_ROUNDING = 8.0 * np.finfo(float).eps  # of an entry of T^T K T, for the square root of the number of summands
 _RIGID = 1e-6  # part of |K| |R| that a declared rigid mode may deform the reduced structure; rounding leaves 1e-10
+_STILL = 1e-10  # part of a coordinate's motion that deforms the structure, below which it is rounding
 
 
 @dataclass(frozen=True)
@@ -46,22 +46,22 @@ def project(
     Raises AccuracyError where a declared rigid-body mode deforms the structure.
     """
     K, M = scipy.sparse.csc_array(structure.stiffness), scipy.sparse.csc_array(structure.mass)
-    stiffness, mass = _symmetric(basis.T @ (K @ basis)), _symmetric(basis.T @ (M @ basis))
-    R = rigid_coordinates
-    if R.shape[1]:
-        motion = basis @ R
-        deformed = abs(K @ motion).max(axis=0) > _RIGID * (abs(K) @ abs(motion)).max(axis=0)
-        if deformed.any():
-            raise AccuracyError(f"{np.count_nonzero(deformed)} of the declared rigid-body modes deform the structure")
-        # what rounding leaves of stiffness against rigid motion: K - M R R^T K, and the same from the right
-        Q = R @ scipy.linalg.inv(scipy.linalg.cholesky(_symmetric(R.T @ mass @ R)))
-        momentum = mass @ Q
-        stiffness = stiffness - momentum @ (Q.T @ stiffness)
-        stiffness = _symmetric(stiffness - (stiffness @ Q) @ momentum.T)
-    # a coordinate that moves a part as a rigid body (a shaft on one axial bearing) is left with rounding alone
-    strain = np.sqrt(np.einsum("ij,ij->j", abs(basis), abs(K) @ abs(basis)))
-    noise = _ROUNDING * np.sqrt(structure.size) * np.outer(strain, strain)
-    stiffness = np.where(abs(stiffness) > noise, stiffness, 0.0)
+    mass, R = _symmetric(basis.T @ (M @ basis)), rigid_coordinates
+    if not R.shape[1]:
+        return Reduction(method, basis, mass, _symmetric(basis.T @ (K @ basis)), R, boundary, vectors)
+    Q = R @ scipy.linalg.inv(scipy.linalg.cholesky(_symmetric(R.T @ mass @ R)))
+    motion, momentum = basis @ Q, mass @ Q
+    deformed = abs(K @ motion).max(axis=0) > _RIGID * (abs(K) @ abs(motion)).max(axis=0)
+    if deformed.any():
+        raise AccuracyError(f"{np.count_nonzero(deformed)} of the declared rigid-body modes deform the structure")
+    elastic = basis - motion @ momentum.T
+    stiffness = _symmetric(elastic.T @ (K @ elastic))
+    # K is rounded in parts of its largest entries: what is left of resistance to rigid motion is taken out again
+    stiffness = stiffness - momentum @ (Q.T @ stiffness)
+    stiffness = _symmetric(stiffness - (stiffness @ Q) @ momentum.T)
+    # a coordinate that moves a part without deforming it (a shaft on one axial bearing) is left with rounding alone
+    deforms = np.linalg.norm(elastic, axis=0) > _STILL * np.linalg.norm(basis, axis=0)
+    stiffness = np.where(np.outer(deforms, deforms), stiffness, 0.0)
     return Reduction(method, basis, mass, stiffness, R, boundary, vectors)
 
 
@@ -73,10 +73,7 @@ def extended(structure: Structure, modes: Real, rigid: int, motion: Real, method
     M = scipy.sparse.csc_array(structure.mass)
     added = independent(motion, M, modes, np.asarray(M @ modes))
     basis = np.hstack([modes[:, :rigid], added, modes[:, rigid:]])
-    found = project(structure, method, basis, np.eye(basis.shape[1], rigid), 0, modes.shape[1] - rigid)
-    stiffness = found.stiffness.copy()
-    stiffness[:rigid], stiffness[:, :rigid] = 0.0, 0.0  # the rigid modes are coordinates here: no rounding need be left
-    return replace(found, stiffness=stiffness)
+    return project(structure, method, basis, np.eye(basis.shape[1], rigid), 0, modes.shape[1] - rigid)
 
 
 def reduced_structure(structure: Structure, reduction: Reduction) -> Structure:
