@@ -1,5 +1,7 @@
 """Constraint modes and the change of coordinates, against a bordered system solved densely."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse
@@ -9,7 +11,7 @@ from sources import beam_shaft, bordered_static, chain, random_source, sparse
 
 from gearpath.components import RigidBody, Structure
 from gearpath.errors import AccuracyError, InputError
-from gearpath.reduction import hold, interface_rows, mesh_rows, port_rows
+from gearpath.reduction import constraint_modes, hold, interface_rows, mesh_rows, port_rows
 
 
 def test_single_coordinate_rows_are_the_partition_of_the_paper(source):
@@ -104,3 +106,9 @@ def test_an_undeclared_mechanism_is_found():
     structure = Structure(np.eye(10), K, np.ones((10, 1)), 0.0, {})
     with pytest.raises(AccuracyError, match="singular to working precision"):
         hold(structure, np.eye(10)[:1])
+
+
+def test_a_false_rigid_mode_is_found():
+    structure = replace(chain(8), rigid_modes=np.linspace(0.0, 1.0, 8)[:, None])
+    with pytest.raises(AccuracyError, match="1 of the declared rigid-body modes deform"):
+        constraint_modes(structure, np.eye(8)[[0, 7]])
