@@ -62,8 +62,14 @@ def check_synthesis_against_reference(system):
 
 
 def check_balance_and_passivity(system):
-    flow = power_flow(assemble(system).modal(), LINES)
-    np.testing.assert_allclose(flow.dissipated_power.sum(axis=0), flow.input_power, rtol=1e-8)
+    modal = assemble(system).modal()
+    flow, load = power_flow(modal, LINES), next(item for item in modal.loads if item.name == modal.excitation)
+    drive = LINES**2 if load.is_transmission_error else 1.0
+    apparent = 0.5 * abs(load.column @ Synthesis(modal, [load]).solve(LINES).elastic[:, 0]) * drive
+    # the input power is a small rest of the apparent power where hardly anything is lost
+    assert np.all(
+        abs(flow.dissipated_power.sum(axis=0) - flow.input_power) < 1e-8 * flow.input_power + 1e-11 * apparent
+    )
     assert np.all(flow.dissipated_power >= 0.0)
     assert np.all(flow.transmitted_power >= -1e-10 * flow.input_power)
     assert np.all(flow.share() < 1.0 + 1e-10)

@@ -9,6 +9,7 @@ import numpy as np
 from .arrays import Real
 
 DEPENDENT = 1e-9  # a vector that keeps less than this part of its length beside the others adds no direction
+_EQUAL = 1e-3  # remainders closer than this, of mirror-image columns, are equal but for rounding: the first one counts
 
 
 @dataclass(frozen=True)
@@ -30,10 +31,10 @@ def block_lanczos(
     sparse, positive definite; start X (n, m); held (n, h), M-orthonormal, are vectors to be orthogonal to.
 
     Every column is made orthogonal to all earlier vectors twice (which is enough for rounding). Of a block the
-    column with the largest remainder, relative to its own length, comes first, so that a block that `count` cuts off
-    keeps its most independent directions. Deflation: a column left with less than 1e-9 of its length is dropped and
-    the blocks stay narrower; breakdown: when a whole block is dropped the space is invariant and ends. No random
-    numbers: the same input gives the same vectors.
+    column with the largest remainder, relative to its own length, comes first (of equal ones the first), so that a
+    block that `count` cuts off keeps its most independent directions. Deflation: a column left with less than 1e-9 of
+    its length is dropped and the blocks stay narrower; breakdown: when a whole block is dropped the space is invariant
+    and ends. No random numbers: the same input gives the same vectors.
     """
     n = len(start)
     V = np.zeros((n, 0)) if held is None else held
@@ -63,7 +64,7 @@ def independent(X: Real, mass: Any, V: Real, momentum: Real, count: int | None =
         X = X - V @ (momentum.T @ X)
     while X.shape[1] and (count is None or len(found) < count):
         remaining = _lengths(X, mass)
-        best = int(np.argmax(remaining))
+        best = int(np.argmax(remaining > (1.0 - _EQUAL) * remaining.max()))
         if remaining[best] < DEPENDENT:
             break
         x = X[:, best] / remaining[best]

@@ -63,7 +63,8 @@ def lanczos(
 
     The interior starts from its static response to the mesh forces, then to the inertia forces of the constraint
     modes: K_ii^-1 [F_e, M_ii A + M_ib]. start "mesh" takes the first part only, as the paper does; in a nearly
-    symmetric gearbox it misses all antisymmetric motion and stagnates. rows default to the ports, since the mesh
+    symmetric gearbox it misses all antisymmetric motion and stagnates; what more than nine vectors find of it in the
+    default gearbox is decided by rounding. rows default to the ports, since the mesh
     response is the first vector. Fewer vectors come back where the Krylov space ends before.
     """
     held = held or hold(structure, port_rows(structure) if rows is None else rows)
