@@ -134,8 +134,13 @@ def state_space(model: Model) -> control.StateSpace:
 
 
 def natural_frequencies(model: Model) -> Real:
-    """Undamped natural frequencies of the assembled machine, ascending, Hz; rigid-body modes are 0."""
-    return _natural_frequencies(modal_network(model))
+    """Undamped natural frequencies of the assembled machine, ascending, Hz; rigid-body modes are 0.
+
+    With plates or frames those up to `frequency.stop` of the model, for which they were reduced.
+    """
+    network = modal_network(model)
+    found = _natural_frequencies(network)
+    return found[found <= network.band]
 
 
 def export_fmu(model: Model, path: str | Path, fmi: str = "2.0", kind: str = "native") -> Path:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import gearpath as gp
 from gearpath.components import Material, RigidBody, Section
 from gearpath.components.beam import beam_element
 from gearpath.components.dofs import DOFS, rigid_motion
@@ -82,6 +83,25 @@ def test_power_through_a_beam_joint():
     lost = flow.dissipated_power[flow.elements.index("neck")]
     assert np.all(lost > 0.0)
     np.testing.assert_allclose(flow.transmitted_power, flow.input_power - lost, rtol=1e-7)
+
+
+def test_a_joint_at_a_disk_holds_the_shaft_not_the_spinning_disk():
+    """Planar: the disk at the station spins freely, and a beam joint reaching sideways must not follow it."""
+    base = gp.load("models/gearbox.toml").to_dict()
+    neck = {
+        "kind": "beam_joint",
+        "between": ["gear_train.input@0.125", "casing"],
+        "offset": [0.0, 0.01, 0.05],
+        "material": "steel",
+        "diameter": 0.004,
+    }
+    alpha = []
+    for z in ("0.125", "0.12499"):
+        joint = {**neck, "between": [f"gear_train.input@{z}", "casing"]}
+        data = {**base, "joints": {**base["joints"], "neck": joint}}
+        data["components"]["gear_train"]["shafts"]["input"]["elements"] = 8
+        alpha.append(float(gp.power_flow(gp.Model.from_dict(data), [700.0]).alpha[0]))
+    assert alpha[0] == pytest.approx(alpha[1], rel=1e-3)
 
 
 def test_ports_that_coincide_are_refused():

@@ -83,6 +83,15 @@ def test_reduced_model_against_the_finite_element_solution():
     np.testing.assert_allclose(flow.dissipated_power.sum("element"), flow.input_power, rtol=1e-8)
 
 
+def test_frequencies_above_the_band_are_refused():
+    """The plates were reduced up to frequency.stop; above, their mobility would be wrong without a sign of it."""
+    with pytest.raises(gp.InputError, match=r"2100 Hz is above 2000 Hz, .* raise frequency.stop"):
+        gp.power_flow(COARSE, [100.0, 2100.0])
+    with pytest.raises(gp.InputError, match=r"raise frequency\.stop"):
+        gp.frequency_response(COARSE, [2100.0])
+    assert gp.natural_frequencies(COARSE)[-1] <= 2000.0
+
+
 def test_natural_frequencies_of_the_assembly():
     """Within 2 % of the frequencies of another finite element code."""
     found = gp.natural_frequencies(COARSE)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg
+from scipy.sparse import issparse
 
 from ..components import Modes, Structure
 from ..numerics.arrays import Real
@@ -31,6 +32,13 @@ class Network:
     loads: tuple[Load, ...]
     outputs: tuple[Output, ...]
     excitation: str
+
+    @property
+    def band(self) -> float:
+        """Highest frequency (Hz) that the bases are good for: infinite unless a component was reduced to its band."""
+        chosen = self.system.vectors
+        reduced = [name for name, item in self.structures.items() if issparse(item.mass) and name not in chosen]
+        return self.system.band if reduced else np.inf
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -100,5 +108,6 @@ def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
         excitation=network.excitation,
         paths=network.paths,
         loss_factors={name: s.loss_factor for name, s in network.structures.items() if s.loss_factor},
+        band=network.band,
         loss_frequency=network.system.loss_frequency,
     )

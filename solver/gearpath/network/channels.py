@@ -17,7 +17,9 @@ _ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
 
 def joint_rows(ports: Ports, name: str, joint: Joint) -> JointRows:
     picked = [DOFS.index(dof) for dof in joint.dofs]
-    source, receiver = (ports.motion(port, port_place(ports.system, joint, port)) for port in joint.between)
+    # a joint holds the shaft at a disk's station, not the disk that spins freely about it
+    active = np.array([dof in ports.system.dofs for dof in DOFS])[:, None]
+    source, receiver = (active * ports.motion(port, port_place(ports.system, joint, port)) for port in joint.between)
     if joint.offset is not None:
         source = rigid_motion(np.array(joint.offset)) @ source
     source, receiver = source[picked], receiver[picked]

@@ -26,6 +26,7 @@ class ModalNetwork:
     excitation: str  # the load that power ratios and frf outputs refer to
     paths: tuple[str, ...]  # joints that count as power flow paths (Network.paths)
     loss_factors: Mapping[str, float] = field(default_factory=dict)  # component -> eta, where it is not 0
+    band: float = np.inf  # Hz, up to where components that were reduced to their band are exact
     loss_frequency: float = 1000.0  # Hz, where loss factors of joints and their viscous equivalents agree
 
     @property

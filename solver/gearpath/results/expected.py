@@ -53,7 +53,7 @@ def labelled_expected_power(
     progress: Progress = lambda _: None,
 ) -> xr.Dataset:
     """Powers of correlated excitations over `frequency`, `path` and `element`, see `gearpath.expected_power`."""
-    f = checked_frequencies(frequencies_hz)
+    f = checked_frequencies(frequencies_hz, network)
     loads = chosen("input", inputs, network.loads)
     S = checked_spectrum(spectrum, [load.name for load in loads], len(f))
     f, Q = _solved(network, f, [load.name for load in loads], progress)
@@ -91,7 +91,7 @@ def labelled_expected_power(
 def _solved(
     network: ModalNetwork, frequencies_hz: ArrayLike, inputs: str | Iterable[str] | None, progress: Progress
 ) -> tuple[Real, PowerMatrices]:
-    f = checked_frequencies(frequencies_hz)
+    f = checked_frequencies(frequencies_hz, network)
     loads = chosen("input", inputs, network.loads)
     if not loads:
         raise InputError("inputs: there is none; name at least one input, such as 'mesh.transmission_error'")

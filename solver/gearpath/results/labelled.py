@@ -17,8 +17,13 @@ from .names import chosen
 Progress = Callable[[int], None]
 
 
-def checked_frequencies(frequencies_hz: ArrayLike) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Frequencies (Hz) as a one-dimensional array; raises InputError unless all are finite and positive."""
+def checked_frequencies(
+    frequencies_hz: ArrayLike, network: ModalNetwork
+) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Frequencies (Hz) as a one-dimensional array.
+
+    Raises InputError unless all are finite and positive, and not above the band that the network was reduced for.
+    """
     try:
         f = np.atleast_1d(np.asarray(frequencies_hz, dtype=float))
     except (TypeError, ValueError) as error:
@@ -28,6 +33,11 @@ def checked_frequencies(frequencies_hz: ArrayLike) -> np.ndarray[tuple[int], np.
     wrong = f[~(np.isfinite(f) & (f > 0.0))]
     if wrong.size:
         raise InputError(f"frequencies: {wrong[0]:g} Hz is not allowed; mobilities need finite, positive frequencies")
+    if f.max() > network.band * (1.0 + 1e-9):
+        raise InputError(
+            f"frequencies: {f.max():g} Hz is above {network.band:g} Hz, up to which plates and frames of this model "
+            "were reduced; raise frequency.stop of the model"
+        )
     return f
 
 
@@ -35,7 +45,7 @@ def labelled_power_flow(
     network: ModalNetwork, frequencies_hz: ArrayLike, amplitude: float, progress: Progress = lambda _: None
 ) -> xr.Dataset:
     """Power flow as a Dataset over `frequency` (Hz), `path` and `element`; see `gearpath.power_flow`."""
-    f = checked_frequencies(frequencies_hz)
+    f = checked_frequencies(frequencies_hz, network)
     flow = power_flow(network, 2.0 * np.pi * f, amplitude, progress)
     return _dataset(network, f, flow, amplitude)
 
@@ -114,7 +124,7 @@ def labelled_response(
     progress: Progress = lambda _: None,
 ) -> xr.DataArray:
     """Frequency responses as a DataArray (frequency, output, input); see `gearpath.frequency_response`."""
-    f = checked_frequencies(frequencies_hz)
+    f = checked_frequencies(frequencies_hz, network)
     linear = tuple(o for o in network.outputs if o.quantity != "power")
     rows: tuple[Output, ...] = chosen("output", outputs, linear, {o.name for o in network.outputs})
     loads: tuple[Load, ...] = chosen("input", inputs, network.loads)

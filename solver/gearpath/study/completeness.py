@@ -87,9 +87,10 @@ def static_completeness(
 
     The excited component is reduced. Counts beyond what it has are left out; raises InputError where none is left.
     """
-    f = np.arange(10.0, 5001.0, 10.0) if frequencies_hz is None else np.asarray(frequencies_hz, float)
-    omega = 2.0 * np.pi * f
     network = assemble(model.system)
+    top = min(5000.0, network.band)  # a component that is itself reduced is complete up to its band only
+    f = np.arange(10.0, top + 1.0, 10.0) if frequencies_hz is None else np.asarray(frequencies_hz, float)
+    omega = 2.0 * np.pi * f
     name = _source(network)
     structure = network.structures[name]
     most = _most(structure)

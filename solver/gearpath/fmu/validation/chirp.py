@@ -45,7 +45,8 @@ def sweep(network: ModalNetwork, start: float, stop: float) -> Sweep:
         signal = np.concatenate([up, up[-2::-1]])
         size = 1e-6 if load.is_transmission_error else 1.0
         forces.append(size * (load.equivalent_mass * (2 * np.pi * stop) ** 2 or 1.0))
-        rounding = max(rounding, 1e-2 * size * spring_force(network, load))
+        # 5000 steps leave up to 5000 eps, 1e-12, of the forces that cancel in every one of them
+        rounding = max(rounding, 2e-2 * size * spring_force(network, load))
         signals[load.name] = size * signal
     return Sweep(signals, step, Drive(max(forces), 2 * np.pi * stop, rounding))
 

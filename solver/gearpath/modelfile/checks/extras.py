@@ -71,7 +71,8 @@ def _check_active(file: FileTable, dof: str, key: str, port: Port | None = None)
     """Refuse an inactive degree of freedom; a gear that meshes turns even where shafts do not twist."""
     if dof == "rz" and port is not None and port.disk is not None:
         train = file.components[port.component]
-        if isinstance(train, GearTrainTable) and train.meshes:
+        meshes = train.meshes.values() if isinstance(train, GearTrainTable) else ()
+        if any(f"{port.shaft}.{port.disk}" in mesh.between for mesh in meshes):
             return
     if dof not in file.dofs:
         raise ModelError(key, f"{show(dof)} is not among the active dofs", hint("", file.dofs))
@@ -88,12 +89,24 @@ def check_sensors(file: FileTable) -> None:
     for name, table in file.sensors.items():
         key = f"sensors.{name}"
         train = _check_item(file, table, key)
+        if table.dof == "rz" and _is_turned(file):
+            raise ModelError(
+                f"{key}.dof",
+                '"rz" reads the spin that deforms the meshes, but a torque also makes all gears roll together',
+                "add rz to dofs, or leave out the torque or this sensor",
+            )
         if table.quantity == "acceleration" and train is not None and train.meshes:
             raise ModelError(
                 f"{key}.quantity",
                 f'"acceleration" on {show(table.component)} needs the derivative of the transmission error',
                 'use "velocity", or put the sensor on the casing',
             )
+
+
+def _is_turned(file: FileTable) -> bool:
+    """Whether a torque acts on a gear whose shaft does not twist."""
+    driven = [table.dof for table in file.actuators.values()] + [file.excitation.dof]
+    return "rz" not in file.dofs and "rz" in driven
 
 
 def _check_item(file: FileTable, table: ActuatorTable, key: str) -> GearTrainTable | None:

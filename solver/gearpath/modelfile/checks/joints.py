@@ -13,6 +13,8 @@ from ..wording import show
 from .matrices import check_matrix
 from .structures import as_model_error
 
+# for each axis of an offset: which rotation moves which translation of its far end
+_CARRIED = ((("rz", "uy"), ("ry", "uz")), (("rz", "ux"), ("rx", "uz")), (("ry", "ux"), ("rx", "uy")))
 _MEETING = 1e-6  # two stations that a joint connects are one place, m
 
 
@@ -93,7 +95,15 @@ def _check_beam(file: FileTable, joint: BeamJointTable, ends: tuple[Port, ...], 
         raise ModelError(
             f"{key}.offset", "is missing", "give the way from the source's end to the receiver's as [x, y, z] in m"
         )
-    if hypot(*beam_offset(file, joint)) <= _MEETING:
+    offset = beam_offset(file, joint)
+    for axis, (turn, moved) in ((a, pair) for a, pairs in enumerate(_CARRIED) for pair in pairs):
+        if abs(offset[axis]) > _MEETING and moved in file.dofs and turn not in file.dofs:
+            raise ModelError(
+                f"{key}.between",
+                f"the joint reaches {offset[axis]:g} m along {'xyz'[axis]}, where a turn {turn} moves its end {moved}",
+                f"add {turn} to dofs",
+            )
+    if hypot(*offset) <= _MEETING:
         raise ModelError(
             f"{key}.between",
             f"the ends {show(list(joint.between))} are at the same place",

@@ -12,6 +12,7 @@ from ..wording import show
 def check_network(file: FileTable) -> None:
     """Refuse parts that are not connected, and element numbers that do not fit the stations."""
     _check_connected(file)
+    _check_direction(file)
     for name, component in file.components.items():
         if isinstance(component, GearTrainTable):
             for shaft in component.shafts:
@@ -45,6 +46,27 @@ def _check_connected(file: FileTable) -> None:
                 f"no path of joints connects {show(name)} with {show(start)} (the ground connects nothing)",
                 "add a joint between them, or make two models",
             )
+
+
+def _check_direction(file: FileTable) -> None:
+    """Refuse bearings and bolted joints that lead in a circle: which end is the source?"""
+    leads: dict[str, set[str]] = {name: set() for name in file.components}
+    for name, joint in file.joints.items():
+        if joint.kind == "mount":
+            continue
+        source, receiver = (find_port(file, text, f"joints.{name}.between").component for text in joint.between)
+        reached, waiting = set[str](), [receiver]
+        while waiting:
+            here = waiting.pop()
+            reached.add(here)
+            waiting += leads.get(here, set()) - reached
+        if source in reached:
+            raise ModelError(
+                f"joints.{name}.between",
+                f"{show(list(joint.between))} leads from {source} to {receiver}, and other joints lead back",
+                "put the source first in all of them: power counts from the first end to the second",
+            )
+        leads[source].add(receiver)
 
 
 def _check_elements(file: FileTable, train: GearTrainTable, component: str, shaft: str) -> None:
