@@ -117,7 +117,9 @@ def band_means(values: Real, f: Real) -> list[tuple[str, float]]:
     """Mean over the lines of each band that holds lines."""
     means = []
     for low, high in pairwise(BANDS):
-        inside = (f >= low) & ((f < high) | ((high == 5000.0) & (f == high)))
+        if low > 0.0 and low == f[-1]:
+            break  # the last line belongs to the band below it
+        inside = (f >= low) & ((f < high) | ((f == high) & (high in (5000.0, f[-1]))))
         if high == np.inf:
             inside &= f > 5000.0
         if inside.any():
