@@ -25,10 +25,13 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 ROOT = Path(__file__).resolve().parent
 SOURCES = ROOT / "fmu_src"
 RUNTIME = ROOT / "solver" / "gearpath" / "fmu" / "runtime"
-HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
+HEADERS = (
+    *("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
+    *("fmi3Functions.h", "fmi3FunctionTypes.h", "fmi3PlatformTypes.h"),
+)
 
 # -ffp-contract=off: no fused multiply-add, so that all platforms compute the same doubles.
-COMMON = ("-std=c99", "-O2", "-g0", "-ffp-contract=off", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+COMMON = ("-std=c99", "-O2", "-g0", "-ffp-contract=off", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
 SHARED = ("-shared", "-fPIC", "-fvisibility=hidden", "-Wl,-s")
 MAC = (*SHARED, "-Wl,-install_name,@rpath/gearpath.dylib")
 # Windows: objects without the C runtime's start-up code, linked with ucrtbase only (all of it takes minutes).

@@ -2,10 +2,8 @@
 
 #include "gp_linalg.h"
 
-static double magnitude(double a) { return a < 0 ? -a : a; }
-
 double gp_clock_jitter(double t, double h) {
-    const double scale = magnitude(t) > magnitude(h) ? magnitude(t) : magnitude(h);
+    const double scale = gp_magnitude(t) > gp_magnitude(h) ? gp_magnitude(t) : gp_magnitude(h);
     return 8 * 2.220446049250313e-16 * scale;
 }
 
@@ -35,7 +33,7 @@ int gp_clock_check(const GpClock *c, double t, double h, GpText *message) {
         gp_text_add(message, " s.");
         return -1;
     }
-    if (!gp_finite(t) || magnitude(t - c->time) > 1e-6 * h + gp_clock_jitter(t, h)) {
+    if (!gp_finite(t) || gp_magnitude(t - c->time) > 1e-6 * h + gp_clock_jitter(t, h)) {
         gp_text_add(message, "The step starts at ");
         gp_text_real(message, t);
         gp_text_add(message, " s, but the last step ended at ");

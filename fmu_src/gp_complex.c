@@ -1,5 +1,7 @@
 #include "gp_complex.h"
 
+#include "gp_linalg.h"
+
 GpComplex gp_cmul(GpComplex a, GpComplex b) {
     GpComplex c;
     c.re = a.re * b.re - a.im * b.im;
@@ -7,11 +9,9 @@ GpComplex gp_cmul(GpComplex a, GpComplex b) {
     return c;
 }
 
-static double magnitude(double a) { return a < 0 ? -a : a; }
-
 GpComplex gp_cdiv(GpComplex a, GpComplex b) {
     GpComplex c;
-    if (magnitude(b.re) >= magnitude(b.im)) {
+    if (gp_magnitude(b.re) >= gp_magnitude(b.im)) {
         const double r = b.im / b.re, d = b.re + b.im * r;
         c.re = (a.re + a.im * r) / d;
         c.im = (a.im - a.re * r) / d;
@@ -22,6 +22,18 @@ GpComplex gp_cdiv(GpComplex a, GpComplex b) {
     }
     return c;
 }
+
+GpComplex gp_complex(double re, double im) {
+    GpComplex z;
+    z.re = re;
+    z.im = im;
+    return z;
+}
+
+GpComplex gp_cadd(GpComplex a, GpComplex b) { return gp_complex(a.re + b.re, a.im + b.im); }
+GpComplex gp_csub(GpComplex a, GpComplex b) { return gp_complex(a.re - b.re, a.im - b.im); }
+GpComplex gp_cscale(double a, GpComplex z) { return gp_complex(a * z.re, a * z.im); }
+double gp_csize(GpComplex z) { return gp_magnitude(z.re) + gp_magnitude(z.im); }
 
 GpComplex gp_cdot(const double *a, const GpComplex *z, size_t n) {
     GpComplex sum = {0, 0};
@@ -45,7 +57,7 @@ int gp_csolve(GpComplex *A, GpComplex *b, size_t n) {
         size_t p = k;
         double best = -1;
         for (size_t i = k; i < n; i++) {
-            const double size = magnitude(A[i * n + k].re) + magnitude(A[i * n + k].im);
+            const double size = gp_csize(A[i * n + k]);
             if (size > best) { best = size; p = i; }
         }
         if (!(best > 0)) return -1;

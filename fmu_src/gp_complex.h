@@ -3,11 +3,18 @@
 /* Complex numbers as pairs of doubles: C99 `complex` needs runtime functions that the Windows build lacks. */
 #include <stddef.h>
 
+#include "gp_exact.h"
+
 typedef struct {
     double re; /* real part */
     double im; /* imaginary part */
 } GpComplex;
 
+GpComplex gp_complex(double re, double im);
+GpComplex gp_cadd(GpComplex a, GpComplex b);
+GpComplex gp_csub(GpComplex a, GpComplex b);
+GpComplex gp_cscale(double a, GpComplex z);
+double gp_csize(GpComplex z); /* |re| + |im| */
 GpComplex gp_cmul(GpComplex a, GpComplex b);
 GpComplex gp_cdiv(GpComplex a, GpComplex b); /* Smith 1962: no overflow in between */
 

@@ -5,79 +5,40 @@
 
 #include "gp_clock.h"
 #include "gp_linalg.h"
+#include "gp_memory.h"
+#include "gp_waves.h"
 
-/* Hands out doubles from one allocation; with base NULL it only counts them. */
-typedef struct {
-    double *base; /* the allocation */
-    size_t used;  /* doubles handed out */
-} Arena;
-
-static double *take(Arena *arena, size_t count) {
-    double *start = arena->base ? arena->base + arena->used : NULL;
-    arena->used += count;
-    return start;
-}
-
-static GpComplex *take_complex(Arena *arena, size_t count) { return (GpComplex *)take(arena, 2 * count); }
-
-static void lay_out(GpInstance *p, Arena *arena) {
+/* Where each output is found among the observed rows: forces and receiver velocities of joints only once. */
+static void find_places(GpInstance *p) {
     const GpModel *m = &p->model;
-    const size_t N = m->modes, n = 2 * N, width = n + 2 * m->loads, wide = n * width;
-    p->K = take(arena, m->blocks);
-    p->C = take(arena, m->blocks);
-    p->valid_K = take(arena, m->blocks);
-    p->valid_C = take(arena, m->blocks);
-    p->zeta = take(arena, m->groups);
-    p->changed = (unsigned char *)take(arena, m->joints / sizeof(double) + 1);
-    p->definite_work = take(arena, 36);
-    p->input = take(arena, m->loads);
-    p->slope = take(arena, m->loads);
-    p->x = take(arena, n);
-    p->next = take(arena, n);
-    p->system.X = take(arena, N);
-    p->system.P = take(arena, m->rows * N);
-    p->system.KP = take(arena, m->rows * N);
-    p->system.CP = take(arena, m->rows * N);
-    p->system.Xd = take(arena, m->loads * N);
-    p->system.push = take(arena, m->loads * N);
-    p->motion.q = take(arena, N);
-    p->motion.v = take(arena, N);
-    p->motion.a = take(arena, N);
-    p->motion.g = take(arena, m->rows);
-    p->response.h = take_complex(arena, N);
-    p->response.v = take_complex(arena, N);
-    p->response.g = take_complex(arena, m->rows);
-    p->response.work = take_complex(arena, m->rows * (2 * m->rows + 1));
-    p->response.alpha = take(arena, m->joints);
-    p->expm.n = n;
-    p->expm.m = m->loads;
-    p->expm.width = width;
-    p->expm.M = take(arena, wide);
-    p->expm.M2 = take(arena, wide);
-    p->expm.M4 = take(arena, wide);
-    p->expm.M6 = take(arena, wide);
-    p->expm.T1 = take(arena, wide);
-    p->expm.T2 = take(arena, wide);
-    for (int i = 0; i < GP_STEP_SIZES; i++) p->discrete[i].columns = take(arena, wide);
+    for (size_t i = 0; i < m->outputs; i++) {
+        const GpOutput *o = m->output + i;
+        const double *row = m->output_rows + i * m->modes;
+        p->place[i] = i;
+        if (o->quantity == GP_FORCE) p->place[i] = m->outputs + m->joint[o->joint].first + o->dof;
+        if (o->quantity != GP_VELOCITY) continue;
+        for (size_t k = 0; k < m->rows; k++)
+            if (!memcmp(row, m->receiver + k * m->modes, m->modes * sizeof *row))
+                p->place[i] = m->outputs + m->rows + k;
+    }
 }
 
 GpInstance *gp_instance_create(GpModel *model, GpText *message) {
     GpInstance *p = calloc(1, sizeof *p);
-    Arena arena = {NULL, 0};
-    if (p) {
-        p->model = *model;
-        lay_out(p, &arena);
-        p->memory = arena.base = calloc(arena.used, sizeof(double));
-        arena.used = 0;
-    }
-    if (!p || !p->memory) {
+    if (p) p->model = *model;
+    if (!p || gp_memory_allocate(p)) {
         free(p);
         gp_text_clear(message);
         gp_text_add(message, "There is not enough memory for another instance of this model.");
         return NULL;
     }
-    lay_out(p, &arena);
+    p->kernels = p->expm.kernels = gp_kernels();
+    find_places(p);
     gp_instance_reset(p);
+    if (p->model.pairs) {
+        gp_system_form(&p->system, &p->model, p->zeta, p->K, p->C);
+        gp_modes_form(&p->modes, &p->model, &p->system, &p->motion, p->states, p->next, p->total, p->work);
+    }
     return p;
 }
 
@@ -88,80 +49,208 @@ void gp_instance_free(GpInstance *p) {
     free(p);
 }
 
+void gp_touch(GpInstance *p) {
+    p->total_ready = p->motion_ready = 0;
+    p->epoch++;
+}
+
 static void forget_discrete(GpInstance *p) {
-    for (int i = 0; i < GP_STEP_SIZES; i++) p->discrete[i].h = 0;
+    for (int i = 0; i < GP_STEP_SIZES; i++) {
+        p->discrete[i].h = 0;
+        p->discrete[i].ready = 0;
+        p->discrete[i].used = 0;
+    }
+}
+
+static void copy(double *to, const double *from, size_t count) {
+    if (count) memcpy(to, from, count * sizeof *to);
 }
 
 void gp_instance_reset(GpInstance *p) {
     const GpModel *m = &p->model;
-    memcpy(p->K, m->stiffness, m->blocks * sizeof(double));
-    memcpy(p->C, m->damping, m->blocks * sizeof(double));
-    memcpy(p->valid_K, m->stiffness, m->blocks * sizeof(double));
-    memcpy(p->valid_C, m->damping, m->blocks * sizeof(double));
-    if (m->groups) memcpy(p->zeta, m->zeta, m->groups * sizeof(double));
+    copy(p->K, m->stiffness, m->blocks);
+    copy(p->C, m->damping, m->blocks);
+    copy(p->valid_K, m->stiffness, m->blocks);
+    copy(p->valid_C, m->damping, m->blocks);
+    copy(p->zeta, m->zeta, m->groups);
+    copy(p->valid_zeta, m->zeta, m->groups);
     memset(p->changed, 0, m->joints);
     memset(p->input, 0, m->loads * sizeof(double));
     memset(p->slope, 0, m->loads * sizeof(double));
-    memset(p->x, 0, 2 * m->modes * sizeof(double));
+    memset(p->now, 0, 2 * m->modes * sizeof(double));
+    for (size_t i = 0; i < m->tones; i++) {
+        p->source.amplitude[i] = m->tone[i].amplitude;
+        p->source.phase[i] = m->tone[i].phase;
+        p->order_frequency[i] = 0;
+    }
+    p->source.teeth = m->teeth;
+    p->source.speed = m->speed;
+    p->source.speed_slope = p->source.turns = p->source.part = p->source.rest = 0;
     p->frequency = m->frequency;
     p->frequency_slope = 0;
+    p->time = 0;
     p->steps = 0;
-    p->system_ready = p->motion_ready = p->response_ready = 0;
+    p->begun = p->jumped = 0;
+    p->modal = m->pairs != 0;
+    p->system_ready = p->states_ready = p->response_ready = 0;
+    gp_touch(p);
     gp_text_clear(&p->message);
     forget_discrete(p); /* so that a run repeats itself bit for bit, whatever was run before */
 }
 
+const double *gp_total(GpInstance *p) {
+    const GpModel *m = &p->model;
+    if (!p->total_ready) {
+        copy(p->total, p->input, m->loads);
+        if (m->source_load != GP_NONE) p->total[m->source_load] += gp_source_value(&p->source, m);
+        p->total_ready = 1;
+    }
+    return p->total;
+}
+
+const double *gp_states(GpInstance *p) {
+    if (!p->modal) return p->now;
+    if (!p->states_ready) gp_modes_to_states(&p->model, p->now, p->states);
+    p->states_ready = 1;
+    return p->states;
+}
+
+const GpMotion *gp_motion(GpInstance *p) {
+    if (!p->motion_ready) gp_system_motion(&p->system, &p->model, gp_states(p), gp_total(p), &p->motion);
+    p->motion_ready = 1;
+    return &p->motion;
+}
+
+static void to_physical(GpInstance *p) {
+    if (!p->modal) return;
+    copy(p->now, gp_states(p), 2 * p->model.modes);
+    p->modal = 0;
+    forget_discrete(p);
+}
+
+static void to_modal(GpInstance *p) {
+    gp_modes_from_states(&p->model, &p->system, p->now, p->next, p->work);
+    if (!gp_all_finite(p->next, 2 * p->model.modes)) return; /* stays as it is */
+    copy(p->now, p->next, 2 * p->model.modes);
+    p->modal = 1;
+    p->states_ready = 0;
+    forget_discrete(p);
+    gp_touch(p); /* also where the step then fails: what was computed before belongs to the other form */
+}
+
 /* Keeps q' = s + sum X d_k e_k where X is about to change under the present inputs: a velocity cannot jump with a
-   damping ratio. Before the first step there is nothing to keep: the instance starts at rest with all inputs 0. */
+   damping ratio. Before time passes there is nothing to keep: the instance starts at rest with all inputs 0. */
 static void keep_velocity(GpInstance *p) {
     const GpModel *m = &p->model;
     const size_t N = m->modes;
-    if (p->steps == 0) return;
+    const double *total = gp_total(p);
+    if (!p->begun) return;
     for (size_t r = 0; r < N; r++) {
         const double change = p->system.X[r] - gp_modal_damping(m, p->zeta, r);
         double motion = 0;
         if (change == 0) continue;
-        for (size_t k = 0; k < m->loads; k++) motion += m->mesh[k * N + r] * p->input[k]; /* d is 0 for forces */
-        p->x[N + r] += change * motion;
+        for (size_t k = 0; k < m->loads; k++) motion += m->mesh[k * N + r] * total[k]; /* d is 0 for forces */
+        p->now[N + r] += change * motion;
+        if (motion != 0) p->jumped = 1;
     }
+}
+
+/* Takes over the matrices of joint j, or goes back to the last valid ones with a sentence. */
+static int use_joint(GpInstance *p, size_t j) {
+    const GpModel *m = &p->model;
+    const size_t at = m->joint[j].block, d = m->joint[j].size;
+    unsigned char used[6];
+    const int stiff = gp_semidefinite(p->K + at, d, p->work, used);
+    const int damped = gp_semidefinite(p->C + at, d, p->work, used);
+    p->changed[j] = 0;
+    if (stiff && damped) {
+        copy(p->valid_K + at, p->K + at, d * d);
+        copy(p->valid_C + at, p->C + at, d * d);
+        p->system_ready = 0;
+        return 0;
+    }
+    copy(p->K + at, p->valid_K + at, d * d);
+    copy(p->C + at, p->valid_C + at, d * d);
+    gp_text_add(&p->message, p->message.length ? " " : "");
+    gp_text_add(&p->message, "The ");
+    gp_text_add(&p->message, stiff ? "damping" : "stiffness");
+    gp_text_add(&p->message, " matrix of ");
+    gp_text_add(&p->message, gp_joint_name(m, j));
+    gp_text_add(&p->message, " is not positive semidefinite; the joint keeps its last valid matrices.");
+    return -1;
+}
+
+static int has_start_parameters(const GpInstance *p) {
+    const GpModel *m = &p->model;
+    return !memcmp(p->valid_K, m->stiffness, m->blocks * sizeof(double)) &&
+           !memcmp(p->valid_C, m->damping, m->blocks * sizeof(double)) &&
+           (!m->groups || !memcmp(p->valid_zeta, m->zeta, m->groups * sizeof(double)));
 }
 
 int gp_use_parameters(GpInstance *p) {
     const GpModel *m = &p->model;
-    unsigned char used[6];
     int failed = 0;
     gp_text_clear(&p->message);
-    for (size_t j = 0; j < m->joints; j++) {
-        const size_t at = m->joint[j].block, d = m->joint[j].size, bytes = d * d * sizeof(double);
-        int stiff, damped;
-        if (!p->changed[j]) continue;
-        stiff = gp_semidefinite(p->K + at, d, p->definite_work, used);
-        damped = gp_semidefinite(p->C + at, d, p->definite_work, used);
-        p->changed[j] = 0;
-        if (stiff && damped) {
-            memcpy(p->valid_K + at, p->K + at, bytes);
-            memcpy(p->valid_C + at, p->C + at, bytes);
-            p->system_ready = 0;
-            continue;
-        }
-        memcpy(p->K + at, p->valid_K + at, bytes);
-        memcpy(p->C + at, p->valid_C + at, bytes);
-        gp_text_add(&p->message, failed ? " " : "");
-        gp_text_add(&p->message, "The ");
-        gp_text_add(&p->message, stiff ? "damping" : "stiffness");
-        gp_text_add(&p->message, " matrix of ");
-        gp_text_add(&p->message, gp_joint_name(m, j));
-        gp_text_add(&p->message, " is not positive semidefinite; the joint keeps its last valid matrices.");
-        failed = -1;
-    }
+    for (size_t j = 0; j < m->joints; j++)
+        if (p->changed[j] && use_joint(p, j)) failed = -1;
     if (!p->system_ready) {
-        keep_velocity(p);
-        gp_system_form(&p->system, m, p->zeta, p->K, p->C);
+        copy(p->valid_zeta, p->zeta, m->groups);
+        p->as_exported = has_start_parameters(p);
+        if (!p->as_exported) to_physical(p);
+        if (!p->modal) keep_velocity(p); /* the modal form always has the start parameters */
+        gp_system_form(&p->system, m, p->zeta, p->valid_K, p->valid_C);
         forget_discrete(p);
         p->system_ready = 1;
-        p->motion_ready = p->response_ready = 0;
+        p->response_ready = 0;
+        for (size_t i = 0; i < m->tones; i++) p->order_frequency[i] = 0;
+        gp_touch(p);
     }
     return failed;
+}
+
+void gp_instance_restored(GpInstance *p, int used) {
+    p->as_exported = has_start_parameters(p);
+    p->system_ready = used;
+    p->states_ready = p->response_ready = p->jumped = 0;
+    for (size_t i = 0; i < p->model.tones; i++) p->order_frequency[i] = 0;
+    gp_touch(p);
+}
+
+int gp_get_states(GpInstance *p, double *states) {
+    copy(states, gp_states(p), 2 * p->model.modes);
+    if (p->model.source_load != GP_NONE) states[2 * p->model.modes] = gp_source_angle(&p->source);
+    return 0;
+}
+
+int gp_set_states(GpInstance *p, const double *states) {
+    const size_t n = 2 * p->model.modes;
+    if (!gp_all_finite(states, p->model.states)) {
+        gp_text_clear(&p->message);
+        gp_text_add(&p->message, "A continuous state is not a finite number.");
+        return -1;
+    }
+    if (p->modal) to_physical(p);
+    copy(p->now, states, n);
+    if (p->model.source_load != GP_NONE) gp_source_turn_to(&p->source, states[n]);
+    gp_touch(p);
+    return 0;
+}
+
+int gp_get_derivatives(GpInstance *p, double *derivatives) {
+    const GpModel *m = &p->model;
+    if (gp_use_parameters(p)) return -1;
+    gp_system_derivative(m, gp_motion(p), derivatives);
+    if (m->source_load != GP_NONE) derivatives[2 * m->modes] = GP_RAD_PER_REV_MIN * p->source.speed;
+    if (gp_all_finite(derivatives, m->states)) return 0;
+    gp_text_add(&p->message, "A derivative overflows; check the states and inputs.");
+    return -1;
+}
+
+void gp_get_nominals(const GpInstance *p, double *nominals) {
+    const size_t N = p->model.modes;
+    copy(nominals, p->model.nominal, N);
+    copy(nominals + N, p->model.nominal, N);
+    if (p->model.source_load != GP_NONE) nominals[2 * N] = 1;
 }
 
 /* The discretisation for h: a kept one, or a new one in the place of the one not used for longest. */
@@ -169,7 +258,7 @@ static GpDiscrete *discretise(GpInstance *p, double time, double h) {
     GpDiscrete *best = NULL, *oldest = p->discrete;
     double nearest = gp_clock_jitter(time, h);
     for (GpDiscrete *d = p->discrete; d < p->discrete + GP_STEP_SIZES; d++) {
-        const double distance = d->h > h ? d->h - h : h - d->h;
+        const double distance = gp_magnitude(d->h - h);
         if (d->h > 0 && distance <= nearest) {
             best = d;
             nearest = distance;
@@ -178,68 +267,101 @@ static GpDiscrete *discretise(GpInstance *p, double time, double h) {
     }
     if (!best) {
         best = oldest;
-        best->h = 0;
-        gp_system_matrices(&p->system, &p->model, p->expm.M, p->expm.width);
-        if (gp_discretise(&p->expm, h, best->columns)) return NULL;
         best->h = h;
+        best->ready = 0;
+    }
+    if (!best->ready) {
+        const int failed = p->modal ? gp_discretise_modal(best, &p->model, &p->modes)
+                                    : gp_discretise_physical(best, &p->expm, &p->model, &p->system);
+        if (failed) {
+            best->h = 0;
+            return NULL;
+        }
         p->formed++;
     }
     best->used = ++p->steps;
     return best;
 }
 
-/* next = x + [Phi - I, Gamma0, Gamma1] [x; u; h du/dt] */
-static void propagate(GpInstance *p, const GpDiscrete *d, double h) {
-    const size_t n = p->expm.n, m = p->model.loads;
-    const double *column = d->columns;
-    memset(p->next, 0, n * sizeof(double));
-    for (size_t j = 0; j + 4 <= n; j += 4, column += 4 * n) { /* n is even; the rest follows */
-        const double x0 = p->x[j], x1 = p->x[j + 1], x2 = p->x[j + 2], x3 = p->x[j + 3];
-        const double *restrict c0 = column, *restrict c1 = c0 + n, *restrict c2 = c1 + n, *restrict c3 = c2 + n;
-        double *restrict y = p->next;
-        for (size_t i = 0; i < n; i++) y[i] += (c0[i] * x0 + c1[i] * x1) + (c2[i] * x2 + c3[i] * x3);
+/* One part of a step: from the coordinates `from` at the time t after the communication point to `to`. */
+static void propagate(GpInstance *p, const GpDiscrete *d, double t, double h, const double *from, double *to) {
+    const GpModel *m = &p->model;
+    const size_t n = 2 * m->modes;
+    int sloping = 0;
+    gp_transition(d, p->kernels, p->modal, from, to, n);
+    for (size_t k = 0; k < m->loads; k++) {
+        p->held[k] = p->input[k] + t * p->slope[k];
+        p->grown[k] = h * p->slope[k];
+        sloping |= p->slope[k] != 0;
     }
-    for (size_t j = n / 4 * 4; j < n; j++, column += n) gp_axpy(p->next, p->x[j], column, n);
-    for (size_t k = 0; k < m; k++, column += n)
-        if (p->input[k] != 0) gp_axpy(p->next, p->input[k], column, n);
-    for (size_t k = 0; k < m; k++, column += n)
-        if (p->slope[k] != 0) gp_axpy(p->next, h * p->slope[k], column, n);
-    for (size_t i = 0; i < n; i++) p->next[i] += p->x[i];
+    p->kernels->add_columns(to, d->columns, p->held, n, m->loads);
+    if (sloping) p->kernels->add_columns(to, d->columns + m->loads * n, p->grown, n, m->loads);
 }
 
-int gp_step(GpInstance *p, double time, double h) {
-    const double frequency = p->frequency + h * p->frequency_slope;
-    const GpDiscrete *d;
-    double check = 0, *swap;
-    if (gp_use_parameters(p)) return -1;
-    if (!gp_finite(frequency) || frequency <= 0) {
-        gp_text_add(&p->message, "The input frequency leaves the positive numbers within this step.");
-        return -1;
-    }
-    d = discretise(p, time, h);
-    if (!d) {
-        gp_text_add(&p->message, "The system cannot be discretised for the step size ");
-        gp_text_real(&p->message, h);
-        gp_text_add(&p->message, " s, because the matrix exponential overflows; use a smaller step.");
-        return -1;
-    }
-    propagate(p, d, h);
-    for (size_t i = 0; i < 2 * p->model.modes; i++) check += p->next[i] - p->next[i];
-    for (size_t k = 0; k < p->model.loads; k++) check += 0 * (p->input[k] + h * p->slope[k]);
-    if (check != 0) { /* NaN: some number is not finite */
-        gp_text_add(&p->message, "The step overflows, so it is not made; check the inputs and their units.");
-        return -1;
-    }
-    swap = p->x;
-    p->x = p->next;
-    p->next = swap;
+static void add_source(GpInstance *p, const GpDiscrete *d, double t, double h, double *to) {
+    const size_t n = 2 * p->model.modes;
+    double c[GP_LEGENDRE];
+    gp_source_coefficients(&p->source, &p->model, t, h, c);
+    for (size_t k = 0; k < GP_LEGENDRE; k++)
+        p->kernels->axpy(to, c[k], d->columns + (2 * p->model.loads + k) * n, n);
+}
+
+static int fail_step(GpInstance *p, const char *sentence) {
+    gp_text_add(&p->message, sentence);
+    return -1;
+}
+
+/* Ends a step whose new coordinates are `to`. */
+static void commit(GpInstance *p, double *to, double h, double frequency) {
+    double *other = to == p->next ? p->spare : p->next;
+    p->spare = p->now;
+    p->next = other;
+    p->now = to;
     for (size_t k = 0; k < p->model.loads; k++) {
         p->input[k] += h * p->slope[k];
         p->slope[k] = 0;
     }
+    if (p->model.source_load != GP_NONE) gp_source_advance(&p->source, h);
     if (frequency != p->frequency) p->response_ready = 0;
     p->frequency = frequency;
     p->frequency_slope = 0;
-    p->motion_ready = 0;
+    p->states_ready = 0;
+    p->begun = 1;
+    gp_touch(p);
+}
+
+int gp_step(GpInstance *p, double time, double h) {
+    const double frequency = p->frequency + h * p->frequency_slope;
+    const size_t tones = p->model.source_load == GP_NONE ? 0 : gp_source_substeps(&p->source, &p->model, h);
+    const size_t parts = tones ? tones : 1;
+    const double part = h / (double)parts;
+    const double *from;
+    double *to = p->next, check = 0;
+    const GpDiscrete *d;
+    if (gp_use_parameters(p)) return -1;
+    if (!gp_finite(frequency) || frequency <= 0)
+        return fail_step(p, "The input frequency leaves the positive numbers within this step.");
+    if (tones == GP_NONE)
+        return fail_step(p, "The gear mesh makes more than 200,000 cycles within this step; use a smaller step.");
+    if (p->model.source_load != GP_NONE && !gp_source_can_advance(&p->source, h))
+        return fail_step(p, "The shaft turns on without limit within this step; check its speed.");
+    if (!p->modal && p->as_exported && p->model.pairs) to_modal(p);
+    d = discretise(p, time, part);
+    if (!d) {
+        gp_text_add(&p->message, "The system cannot be discretised for the step size ");
+        gp_text_real(&p->message, h);
+        return fail_step(p, " s, because the matrix exponential overflows; use a smaller step.");
+    }
+    from = p->now;
+    for (size_t i = 0; i < parts; i++) {
+        to = i % 2 ? p->spare : p->next;
+        propagate(p, d, (double)i * part, part, from, to);
+        if (tones) add_source(p, d, (double)i * part, part, to);
+        from = to;
+    }
+    for (size_t k = 0; k < p->model.loads; k++) check += 0 * (p->input[k] + h * p->slope[k]);
+    if (check != 0 || !gp_all_finite(to, 2 * p->model.modes)) /* NaN: some number is not finite */
+        return fail_step(p, "The step overflows, so it is not made; check the inputs and their units.");
+    commit(p, to, h, frequency);
     return 0;
 }

@@ -2,15 +2,22 @@
 
 #include <string.h>
 
-int gp_finite(double value) { return value - value == 0.0; }
-
 double gp_dot(const double *a, const double *b, size_t n) {
-    double sum[4] = {0, 0, 0, 0};
+    double sum[8] = {0, 0, 0, 0, 0, 0, 0, 0}; /* enough for the latency of an addition to hide */
     size_t i = 0;
-    for (; i + 4 <= n; i += 4)
-        for (size_t k = 0; k < 4; k++) sum[k] += a[i + k] * b[i + k];
+    for (; i + 8 <= n; i += 8)
+        for (size_t k = 0; k < 8; k++) sum[k] += a[i + k] * b[i + k];
     for (; i < n; i++) sum[0] += a[i] * b[i];
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+}
+
+int gp_all_finite(const double *values, size_t n) {
+    double sum[8] = {0, 0, 0, 0, 0, 0, 0, 0}; /* 0 * x is 0, or NaN where x is not finite */
+    size_t i = 0;
+    for (; i + 8 <= n; i += 8)
+        for (size_t k = 0; k < 8; k++) sum[k] += 0 * values[i + k];
+    for (; i < n; i++) sum[0] += 0 * values[i];
+    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7])) == 0;
 }
 
 void gp_axpy(double *y, double alpha, const double *x, size_t n) {
@@ -44,13 +51,11 @@ static void swap_rows(double *a, double *b, size_t n) {
     }
 }
 
-static double magnitude(double a) { return a < 0 ? -a : a; }
-
 int gp_solve(double *A, size_t lda, double *B, size_t ldb, size_t n, size_t columns) {
     for (size_t k = 0; k < n; k++) {
         size_t p = k;
         for (size_t i = k + 1; i < n; i++)
-            if (magnitude(A[i * lda + k]) > magnitude(A[p * lda + k])) p = i;
+            if (gp_magnitude(A[i * lda + k]) > gp_magnitude(A[p * lda + k])) p = i;
         if (A[p * lda + k] == 0 || !gp_finite(A[p * lda + k])) return -1;
         if (p != k) {
             swap_rows(A + k * lda, A + p * lda, n);
@@ -101,7 +106,7 @@ int gp_semidefinite(const double *A, size_t n, double *work, unsigned char *used
             const double rest = used[i] || used[k] ? 0 : work[i * n + k];
             if (i == k && rest < -tolerance * A[i * n + i]) return 0;
             /* ratios first: the product of two small diagonals could underflow */
-            if (rest != 0 && magnitude(rest / A[i * n + i]) * magnitude(rest / A[k * n + k]) >
+            if (rest != 0 && gp_magnitude(rest / A[i * n + i]) * gp_magnitude(rest / A[k * n + k]) >
                                  100 * tolerance * tolerance)
                 return 0;
         }

@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "gp_exact.h"
+
 /* sum a_i b_i */
 double gp_dot(const double *a, const double *b, size_t n);
 
@@ -22,6 +24,10 @@ int gp_solve(double *A, size_t lda, double *B, size_t ldb, size_t n, size_t colu
    `work` holds n * n doubles and `used` n bytes. */
 int gp_semidefinite(const double *A, size_t n, double *work, unsigned char *used);
 
-int gp_finite(double value);
+int gp_all_finite(const double *values, size_t n);
+
+/* The difference is NaN where the value is not finite. NOLINTNEXTLINE(misc-redundant-expression) */
+static inline int gp_finite(double value) { return value - value == 0.0; }
+static inline double gp_magnitude(double value) { return value < 0 ? -value : value; }
 
 #endif

@@ -2,25 +2,18 @@
 
    header   magic "GEARPATH", u32 version, u32 0x01020304, u64 file size, u32 CRC-32 of all that follows byte 32,
             u32 zero, char guid[40]
-   counts   u32 N, groups, joints, rows, blocks, loads, outputs, variables, excitation, text bytes, zero, zero
-   sections in the order of `GpModel`: frequency, the doubles, the indices, the records, the text */
+   counts   u32 N, groups, joints, rows, blocks, loads, outputs, variables, excitation, text bytes, tones,
+            source load, pairs, zero, zero, zero
+   sections in the order of `find_sections`: the doubles, the indices, the records, the text */
 #include "gp_model.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "gp_linalg.h"
+#include "gp_crc.h"
+#include "gp_model_check.h"
 
-enum { HEADER = 72, COUNTS = 12, VERSION = 1, LARGEST_COUNT = 1 << 13, LARGEST_FILE = 1 << 30 };
-
-static uint32_t crc32_of(const unsigned char *data, size_t size) {
-    uint32_t crc = 0xFFFFFFFFu;
-    for (size_t i = 0; i < size; i++) {
-        crc ^= data[i];
-        for (int k = 0; k < 8; k++) crc = (crc >> 1) ^ (0xEDB88320u & (0u - (crc & 1u)));
-    }
-    return ~crc;
-}
+enum { HEADER = 72, COUNTS = 16, VERSION = 2, LARGEST_COUNT = 1 << 13, LARGEST_FILE = 1 << 30 };
 
 static int refuse(GpText *message, const char *why) {
     gp_text_clear(message);
@@ -51,18 +44,35 @@ static int check_header(GpModel *m, size_t size, GpText *message) {
     uint32_t word[4]; /* version, byte order, CRC, zero */
     uint64_t stated;
     if (size < HEADER + 4 * COUNTS) return refuse(message, "it is too short; unpack the FMU again.");
-    if (memcmp(m->bytes, "GEARPATH", 8)) return refuse(message, "it is not a Gearpath model.");
+    if (memcmp(m->bytes, "GEARPATH", 8) != 0) return refuse(message, "it is not a Gearpath model.");
     memcpy(word, m->bytes + 8, 8);
     memcpy(&stated, m->bytes + 16, 8);
     memcpy(word + 2, m->bytes + 24, 8);
     if (word[0] != VERSION) return refuse(message, "its format has another version; export the FMU again.");
     if (word[1] != 0x01020304u) return refuse(message, "its byte order is not this machine's.");
     if (stated != size) return refuse(message, "its size is wrong, so it is truncated; unpack the FMU again.");
-    if (word[3] != 0 || word[2] != crc32_of(m->bytes + 32, size - 32))
+    if (word[3] != 0 || word[2] != gp_crc32(m->bytes + 32, size - 32))
         return refuse(message, "its checksum is wrong, so it was altered; unpack the FMU again.");
     memcpy(m->guid, m->bytes + 32, sizeof m->guid);
     if (m->guid[sizeof m->guid - 1]) return refuse(message, "its GUID is not terminated.");
     return 0;
+}
+
+static int read_counts(GpModel *m, size_t *text_size) {
+    uint32_t n[COUNTS];
+    memcpy(n, m->bytes + HEADER, sizeof n);
+    for (int i = 0; i < COUNTS; i++) {
+        const int may_be_large = i == 4 || i == 7 || i == 9;
+        if (n[i] > (may_be_large ? 1u << 24 : (uint32_t)LARGEST_COUNT) && !(i == 11 && n[i] == GP_NONE)) return -1;
+    }
+    m->modes = n[0], m->groups = n[1], m->joints = n[2], m->rows = n[3], m->blocks = n[4];
+    m->loads = n[5], m->outputs = n[6], m->variables = n[7], m->excitation = n[8], *text_size = n[9];
+    m->tones = n[10], m->source_load = n[11], m->pairs = n[12];
+    m->states = 2 * m->modes + (m->source_load != GP_NONE);
+    if (!m->modes || !m->joints || !m->rows || !m->loads || m->excitation >= m->loads) return -1;
+    if (m->pairs && m->pairs != m->modes) return -1;
+    if (m->source_load == GP_NONE ? m->tones != 0 : m->source_load >= m->loads) return -1;
+    return n[13] || n[14] || n[15] ? -1 : 0;
 }
 
 /* The next section of `count` items: its start, or NULL behind the end of the file. */
@@ -74,23 +84,16 @@ static const void *section(const GpModel *m, size_t *at, size_t size, size_t cou
     return start;
 }
 
-static int find_sections(GpModel *m, size_t size, size_t *text_size) {
-    uint32_t n[COUNTS];
+static int find_sections(GpModel *m, size_t size, size_t text_size) {
     size_t at = HEADER + 4 * COUNTS;
-    const double *frequency;
-    memcpy(n, m->bytes + HEADER, sizeof n);
-    for (int i = 0; i < COUNTS; i++)
-        if (n[i] > (i == 4 || i == 7 || i == 9 ? 1u << 24 : (uint32_t)LARGEST_COUNT)) return -1;
-    m->modes = n[0], m->groups = n[1], m->joints = n[2], m->rows = n[3], m->blocks = n[4];
-    m->loads = n[5], m->outputs = n[6], m->variables = n[7], m->excitation = n[8], *text_size = n[9];
-    if (!m->modes || !m->joints || !m->rows || !m->loads || m->excitation >= m->loads || n[10] || n[11]) return -1;
-    frequency = section(m, &at, size, 1, 8);
-    if (!frequency) return -1;
-    m->frequency = *frequency;
+    const double *starts;
 #define GP_SECTION(field, count, item) \
     if (!((field) = section(m, &at, size, count, item))) return -1
+    GP_SECTION(starts, 3, 8);
+    m->frequency = starts[0], m->speed = starts[1], m->teeth = starts[2];
     GP_SECTION(m->eigenvalues, m->modes, 8);
     GP_SECTION(m->scale, m->modes, 8);
+    GP_SECTION(m->nominal, m->modes, 8);
     GP_SECTION(m->zeta, m->groups, 8);
     GP_SECTION(m->source, m->rows * m->modes, 8);
     GP_SECTION(m->receiver, m->rows * m->modes, 8);
@@ -99,97 +102,38 @@ static int find_sections(GpModel *m, size_t size, size_t *text_size) {
     GP_SECTION(m->column, m->loads * m->modes, 8);
     GP_SECTION(m->mesh, m->loads * m->modes, 8);
     GP_SECTION(m->output_rows, m->outputs * m->modes, 8);
+    GP_SECTION(m->pole, m->pairs, sizeof(GpPole));
+    GP_SECTION(m->shape, 2 * m->pairs * m->modes, 8);
+    GP_SECTION(m->tone, m->tones, sizeof(GpTone));
+    GP_SECTION(m->pair_kind, m->pairs, 4);
     GP_SECTION(m->group, m->modes, 4);
     GP_SECTION(m->is_error, m->loads, 4);
     GP_SECTION(m->rotation, m->rows, 4);
     GP_SECTION(m->joint, m->joints, sizeof(GpJoint));
     GP_SECTION(m->output, m->outputs, sizeof(GpOutput));
     GP_SECTION(m->variable, m->variables, sizeof(GpVariable));
-    GP_SECTION(m->text, *text_size, 1);
+    GP_SECTION(m->text, text_size, 1);
 #undef GP_SECTION
     return at == size ? 0 : -1;
 }
 
-static int check_numbers(const GpModel *m) {
-    const double *first = m->eigenvalues, *end = m->output_rows + m->outputs * m->modes;
-    for (; first < end; first++)
-        if (!gp_finite(*first)) return -1;
-    if (!gp_finite(m->frequency) || m->frequency <= 0) return -1;
-    for (size_t r = 0; r < m->modes; r++) {
-        if (m->eigenvalues[r] < 0 || !(m->scale[r] > 0)) return -1;
-        if (m->group[r] != GP_NONE && m->group[r] >= m->groups) return -1;
-    }
-    for (size_t i = 0; i < m->groups; i++)
-        if (m->zeta[i] < 0 || m->zeta[i] >= 1) return -1;
-    for (size_t i = 0; i < m->loads; i++)
-        if (m->is_error[i] > 1) return -1;
-    for (size_t i = 0; i < m->rows; i++)
-        if (m->rotation[i] > 1) return -1;
-    return 0;
-}
-
-static int check_joints(const GpModel *m, size_t text_size) {
-    size_t row = 0, block = 0;
-    if (!text_size || m->text[text_size - 1]) return -1;
-    for (size_t i = 0; i < m->joints; i++) {
-        const GpJoint *j = m->joint + i;
-        const size_t d = j->size;
-        if (j->first != row || j->block != block || d == 0 || d > 6 || j->path > 1 || j->zero) return -1;
-        if (j->name >= text_size || row + d > m->rows || block + d * d > m->blocks) return -1;
-        for (size_t k = 0; k < d * d; k++) {
-            const size_t mirror = block + k % d * d + k / d;
-            if (m->stiffness[block + k] != m->stiffness[mirror] || m->damping[block + k] != m->damping[mirror])
-                return -1;
-        }
-        row += d;
-        block += d * d;
-    }
-    return row == m->rows && block == m->blocks ? 0 : -1;
-}
-
-static int check_outputs(const GpModel *m) {
-    for (size_t i = 0; i < m->outputs; i++) {
-        const GpOutput *o = m->output + i;
-        const int of_joint = o->quantity == GP_FORCE || o->quantity == GP_POWER;
-        if (o->quantity >= GP_QUANTITIES || o->zero) return -1;
-        if (of_joint ? o->joint >= m->joints || o->dof >= m->joint[o->joint].size
-                     : o->joint != GP_NONE || o->dof != 0)
-            return -1;
-    }
-    return 0;
-}
-
-static int check_variable(const GpModel *m, const GpVariable *v) {
-    switch (v->kind) {
-    case GP_INPUT: return v->a < m->loads && !v->b && !v->c;
-    case GP_FREQUENCY: return !v->a && !v->b && !v->c;
-    case GP_STIFFNESS:
-    case GP_DAMPING: return v->a < m->joints && v->b <= v->c && v->c < m->joint[v->a].size;
-    case GP_MODAL_DAMPING: return v->a < m->groups && !v->b && !v->c;
-    case GP_OUTPUT: return v->a < m->outputs && !v->b && !v->c;
-    case GP_ALPHA: return v->a < 3 && !v->b && !v->c;
-    case GP_JOINT_ALPHA: return v->a < m->joints && !v->b && !v->c;
-    case GP_FRF_REAL:
-    case GP_FRF_IMAG: return v->a < m->outputs && m->output[v->a].quantity != GP_POWER && !v->b && !v->c;
-    default: return 0;
-    }
-}
-
 int gp_model_read(GpModel *m, FILE *stream, GpText *message) {
     size_t size = 0, text_size = 0;
+    const char *wrong = NULL;
     int failed;
     memset(m, 0, sizeof *m);
     if (read_all(m, stream, &size, message)) return -1;
     failed = check_header(m, size, message);
-    if (!failed && find_sections(m, size, &text_size))
+    if (!failed && (read_counts(m, &text_size) || find_sections(m, size, text_size)))
         failed = refuse(message, "its counts do not fit its size.");
-    if (!failed && check_numbers(m)) failed = refuse(message, "a number is out of range.");
-    if (!failed && check_joints(m, text_size)) failed = refuse(message, "a joint is wrong.");
-    if (!failed && check_outputs(m)) failed = refuse(message, "an output is wrong.");
-    for (size_t i = 0; !failed && i < m->variables; i++)
-        if (!check_variable(m, m->variable + i)) failed = refuse(message, "a variable is wrong.");
-    if (failed) gp_model_free(m);
-    return failed;
+    if (!failed) wrong = gp_model_check(m, text_size);
+    if (wrong) failed = refuse(message, wrong);
+    if (failed) {
+        gp_model_free(m);
+        return failed;
+    }
+    for (size_t i = 0; i < m->outputs; i++) m->linear += m->output[i].quantity != GP_POWER;
+    return 0;
 }
 
 void gp_model_free(GpModel *m) {
@@ -197,4 +141,58 @@ void gp_model_free(GpModel *m) {
     memset(m, 0, sizeof *m);
 }
 
+size_t gp_variable_size(const GpModel *m, const GpVariable *v) {
+    const size_t d = v->kind == GP_STIFFNESS_MATRIX || v->kind == GP_DAMPING_MATRIX || v->kind == GP_PORT_FORCES ||
+                             v->kind == GP_PORT_VELOCITIES
+                         ? m->joint[v->a].size
+                         : 0;
+    switch (v->kind) {
+    case GP_STIFFNESS_MATRIX:
+    case GP_DAMPING_MATRIX: return d * d;
+    case GP_PORT_FORCES:
+    case GP_PORT_VELOCITIES: return d;
+    case GP_STATES:
+    case GP_DERIVATIVES: return m->states;
+    case GP_MATRIX_A: return 4 * m->modes * m->modes;
+    case GP_MATRIX_B: return 2 * m->modes * m->loads;
+    case GP_MATRIX_C: return m->linear * 2 * m->modes;
+    case GP_MATRIX_D: return m->linear * m->loads;
+    default: return 1;
+    }
+}
+
+static GpVariable scalar(uint32_t kind, size_t a, size_t b, size_t c) {
+    GpVariable v = {0, 0, 0, 0, 0, 0};
+    v.kind = kind;
+    v.a = (uint32_t)a;
+    v.b = (uint32_t)b;
+    v.c = (uint32_t)c;
+    return v;
+}
+
+GpVariable gp_variable_element(const GpModel *m, const GpVariable *v, size_t i) {
+    size_t d, row, column;
+    switch (v->kind) {
+    case GP_STIFFNESS_MATRIX:
+    case GP_DAMPING_MATRIX:
+        d = m->joint[v->a].size;
+        row = i / d < i % d ? i / d : i % d; /* the matrix is symmetric: the entry in its upper half */
+        column = i / d + i % d - row;
+        return scalar(v->kind == GP_STIFFNESS_MATRIX ? GP_STIFFNESS : GP_DAMPING, v->a, row, column);
+    case GP_PORT_FORCES: return scalar(GP_PORT_FORCE, v->a, i, 0);
+    case GP_PORT_VELOCITIES: return scalar(GP_PORT_VELOCITY, v->a, i, 0);
+    case GP_STATES: return scalar(GP_STATE, i, 0, 0);
+    case GP_DERIVATIVES: return scalar(GP_DERIVATIVE, i, 0, 0);
+    case GP_MATRIX_A:
+    case GP_MATRIX_C:
+        d = 2 * m->modes;
+        return scalar(v->kind == GP_MATRIX_A ? GP_ENTRY_A : GP_ENTRY_C, 0, i / d, i % d);
+    case GP_MATRIX_B:
+    case GP_MATRIX_D:
+        return scalar(v->kind == GP_MATRIX_B ? GP_ENTRY_B : GP_ENTRY_D, 0, i / m->loads, i % m->loads);
+    default: return *v;
+    }
+}
+
+const char *gp_variable_name(const GpModel *m, size_t reference) { return m->text + m->variable[reference].name; }
 const char *gp_joint_name(const GpModel *m, size_t joint) { return m->text + m->joint[joint].name; }

@@ -139,8 +139,8 @@ FILE *gp_open_resource(const char *location, const char *file, GpText *message) 
         full = malloc(length + strlen(file) + 2);
         if (full) {
             memcpy(full, path, length + 1);
-            if (length && full[length - 1] != '/' && full[length - 1] != '\\') strcat(full, "/");
-            strcat(full, file);
+            if (length && full[length - 1] != '/' && full[length - 1] != '\\') full[length++] = '/';
+            memcpy(full + length, file, strlen(file) + 1);
             stream = open_native(full);
             free(full);
         }

@@ -1,11 +1,8 @@
 #include "gp_system.h"
 
-#include <string.h>
-
 #include "gp_linalg.h"
 
-/* result (rows, N) = blockdiag(packed) P */
-static void multiply_joints(const GpModel *m, const double *packed, const double *P, double *result) {
+void gp_system_joints(const GpModel *m, const double *packed, const double *P, double *result) {
     for (size_t j = 0; j < m->joints; j++) {
         const GpJoint *joint = m->joint + j;
         const size_t at = joint->first * m->modes;
@@ -22,8 +19,8 @@ void gp_system_form(GpSystem *s, const GpModel *m, const double *zeta, const dou
     const size_t N = m->modes;
     for (size_t r = 0; r < N; r++) s->X[r] = gp_modal_damping(m, zeta, r);
     for (size_t i = 0; i < m->rows * N; i++) s->P[i] = m->source[i] - m->receiver[i];
-    multiply_joints(m, K, s->P, s->KP);
-    multiply_joints(m, C, s->P, s->CP);
+    gp_system_joints(m, K, s->P, s->KP);
+    gp_system_joints(m, C, s->P, s->CP);
     for (size_t k = 0; k < m->loads; k++)
         for (size_t r = 0; r < N; r++) {
             const double X = s->X[r], column = m->column[k * N + r];
@@ -34,7 +31,7 @@ void gp_system_form(GpSystem *s, const GpModel *m, const double *zeta, const dou
 
 void gp_system_matrices(const GpSystem *s, const GpModel *m, double *M, size_t width) {
     const size_t N = m->modes, n = 2 * N;
-    memset(M, 0, n * width * sizeof *M);
+    
     for (size_t r = 0; r < N; r++) {
         double *upper = M + r * width, *lower = M + (N + r) * width;
         upper[N + r] = m->scale[r];
@@ -72,6 +69,13 @@ void gp_system_motion(const GpSystem *s, const GpModel *m, const double *x, cons
     for (size_t i = 0; i < m->rows; i++) {
         motion->g[i] = gp_dot(s->KP + i * N, motion->q, N) + gp_dot(s->CP + i * N, motion->v, N);
         gp_axpy(motion->a, -motion->g[i], s->P + i * N, N);
+    }
+}
+
+void gp_system_derivative(const GpModel *m, const GpMotion *motion, double *derivative) {
+    for (size_t r = 0; r < m->modes; r++) {
+        derivative[r] = m->scale[r] * motion->v[r];
+        derivative[m->modes + r] = motion->a[r];
     }
 }
 

@@ -30,11 +30,17 @@ double gp_modal_damping(const GpModel *m, const double *zeta, size_t r);
 /* Forms everything that depends on zeta (groups) and on the packed K and C (blocks). */
 void gp_system_form(GpSystem *s, const GpModel *m, const double *zeta, const double *K, const double *C);
 
-/* Writes [A | B] to the wide matrix M (2N x width). */
+/* result (rows, N) = blockdiag(packed) P */
+void gp_system_joints(const GpModel *m, const double *packed, const double *P, double *result);
+
+/* Writes [A | B] to the top left of a matrix of zeros with `width` columns. */
 void gp_system_matrices(const GpSystem *s, const GpModel *m, double *M, size_t width);
 
 /* The motion that belongs to the state x (2N) and the inputs u (M). */
 void gp_system_motion(const GpSystem *s, const GpModel *m, const double *x, const double *u, GpMotion *motion);
+
+/* x' (2N) from the motion. */
+void gp_system_derivative(const GpModel *m, const GpMotion *motion, double *derivative);
 
 /* The value of one output. */
 double gp_system_output(const GpModel *m, const GpMotion *motion, size_t output);

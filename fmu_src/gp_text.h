@@ -3,6 +3,8 @@
 /* Messages without printf: the Windows build has no full C runtime, and a message must never fail. */
 #include <stddef.h>
 
+#include "gp_exact.h"
+
 enum { GP_TEXT_SIZE = 768 };
 
 typedef struct {

@@ -143,16 +143,20 @@ def natural_frequencies(model: Model) -> Real:
     return found[found <= network.band]
 
 
-def export_fmu(model: Model, path: str | Path, fmi: str = "2.0", kind: str = "native") -> Path:
+def export_fmu(
+    model: Model, path: str | Path, fmi: str = "2.0", kind: str = "native", *, documentation: bool = True
+) -> Path:
     """Write the model as an FMU and return its path.
 
     kind "native" runs without Python on every platform; kind "python" holds the whole solver, with the design
-    parameters as well, and needs Python with numpy and scipy in the host. Raises InputError for an unknown kind or
+    parameters as well, and needs Python with numpy and scipy in the host. `documentation` adds plots of this very model
+    and reference results to the native kind. Raises InputError for an unknown kind or
     version and for a path that cannot be written.
     """
     from .fmu.export import export
 
-    return export(model.system, Path(path), fmi=fmi, kind=kind, frequency=model.frequency.start)
+    start = model.frequency.start
+    return export(model.system, Path(path), fmi=fmi, kind=kind, frequency=start, documentation=documentation)
 
 
 def validate_fmu(

@@ -17,6 +17,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
 from . import __version__, console  # noqa: E402
+from .errors import InputError  # noqa: E402
 
 app = typer.Typer(
     name="gearpath",
@@ -90,13 +91,25 @@ def fmu(
 @app.command()
 def validate(
     fmu: Annotated[Path, typer.Argument(metavar="FMU", help="The FMU to check.")],
-    model: Annotated[Path, typer.Argument(metavar="MODEL", help="The model file that it was exported from.")],
+    model: Annotated[
+        Path | None, typer.Argument(metavar="[MODEL]", help="The model file that it was exported from.")
+    ] = None,
     set_: Settings = [],  # noqa: B006
     json: Json = False,
 ) -> None:
-    """Check an FMU against its model; every check prints its figure and its limit."""
-    from .job import validate_one
+    """Check an FMU against its model, figures with their limits; without a model any FMU against the standard."""
+    from .job import conformance_of, validate_one
 
+    if model is None:
+        if set_:
+            raise InputError("--set changes a model, and none is given; name the model file after the FMU")
+        findings = conformance_of(fmu)
+        if json:
+            console.print_json({"fmu": fmu, "findings": console.findings_as_list(findings)})
+        else:
+            console.print_findings(findings)
+            console.out.print(f"{fmu}: {console.counted(findings)}", markup=False)
+        raise typer.Exit(console.CHECK_FAILED if any(f.severity == "error" for f in findings) else console.DONE)
     report = validate_one(fmu, console.load_with(model, set_), quiet=json)
     if json:
         console.print_json(console.report_as_dict(report))

@@ -7,7 +7,7 @@ import sys
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -19,6 +19,7 @@ from rich.table import Table
 
 from .errors import GearpathError, InputError
 from .fmu.checks import ValidationReport
+from .fmu.conformance import Finding, Severity
 from .modelfile import Model, load
 
 DONE, CHECK_FAILED, BAD_INPUT = 0, 1, 2
@@ -117,7 +118,27 @@ def report_as_dict(report: ValidationReport) -> dict[str, Any]:
             {"name": c.name, "figure": c.figure, "limit": c.limit, "passed": c.passed, "what": c.what}
             for c in report.checks
         ],
+        "findings": findings_as_list(report.findings),
     }
+
+
+def findings_as_list(findings: Sequence[Finding]) -> list[dict[str, str]]:
+    """Findings of the conformance check for machines."""
+    return [asdict(finding) for finding in findings]
+
+
+def counted(findings: Sequence[Finding]) -> str:
+    """How many findings of each severity there are, in words."""
+    counts = [(sum(f.severity == kind for f in findings), kind.value) for kind in Severity]
+    return ", ".join(f"{n} {name}{'s' if n > 1 else ''}" for n, name in counts if n) or "conforms to the standard"
+
+
+def print_findings(findings: Sequence[Finding]) -> None:
+    """Findings of the conformance check, one a line with the clause of the standard."""
+    colours = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.NOTE: "cyan"}
+    for finding in findings:
+        head = f"[{colours[finding.severity]}]{finding.severity}[/] {finding.rule}"
+        out.print(f"  {head}: {escape(finding.message)} ({escape(finding.clause)})")
 
 
 def print_report(report: ValidationReport) -> None:
@@ -134,3 +155,4 @@ def print_report(report: ValidationReport) -> None:
     for check in report.checks:
         if not check.passed:
             out.print(f"  {escape(check.name)}: {escape(check.what)}")
+    print_findings(report.findings)

@@ -7,7 +7,9 @@ from pathlib import Path
 from rich.markup import escape
 
 from . import api, console
+from .errors import InputError
 from .fmu.checks import ValidationReport
+from .fmu.conformance import Finding, check_conformance
 from .modelfile import Model
 
 
@@ -24,8 +26,15 @@ def validate_one(path: Path, model: Model, quiet: bool = False) -> ValidationRep
         return api.validate_fmu(path, model, message=bar.describe, advance=bar.advance)
 
 
+def conformance_of(path: Path) -> tuple[Finding, ...]:
+    """What the conformance check finds in any FMU; raises InputError where there is no file."""
+    if not path.is_file():
+        raise InputError(f"{path}: cannot be read (no such file); give the path of an FMU")
+    return check_conformance(path)
+
+
 def build(model: Model, folder: Path) -> bool:
-    """Write both kinds of FMU and the report into `folder`; whether every check passed."""
+    """Write the FMUs of all kinds and the report into `folder`; whether every check passed."""
     from .report import write_report
 
     console.out.print(f"model {escape(model.name)}: {_contents(model)}")
@@ -34,8 +43,8 @@ def build(model: Model, folder: Path) -> bool:
     first = ", ".join(f"{f:.1f}" for f in api.natural_frequencies(model)[:6])
     console.out.print(f"natural frequencies {first} ... Hz; power balance holds to {residual:.1g}")
     reports = []
-    for name, kind in ((f"{folder.name}.fmu", "native"), (f"{folder.name}-python.fmu", "python")):
-        path = export_one(model, folder / name, kind, "2.0")
+    for ending, kind, fmi in (("", "native", "2.0"), ("-fmi3", "native", "3.0"), ("-python", "python", "2.0")):
+        path = export_one(model, folder / f"{folder.name}{ending}.fmu", kind, fmi)
         reports.append(validate_one(path, model))
         console.print_report(reports[-1])
     written = write_report(model, folder / "report.html", validations=reports)

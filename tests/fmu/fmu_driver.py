@@ -7,6 +7,7 @@ from pathlib import Path
 
 import fmpy
 import numpy as np
+from fmi_signatures import declare
 from fmpy.model_description import ModelDescription, read_model_description
 
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
@@ -46,27 +47,16 @@ class Fmu:
             library = (
                 folder
                 / "binaries"
-                / fmpy.platform
+                / (fmpy.platform if description.fmiVersion == "2.0" else fmpy.platform_tuple)
                 / (description.coSimulation.modelIdentifier + fmpy.sharedLibraryExtension)
             )
-        return Unpacked(folder, description, ct.CDLL(str(library)))
+        loaded = ct.CDLL(str(library))
+        declare(loaded, int(description.fmiVersion[0]))
+        return Unpacked(folder, description, loaded)
 
     def __init__(self, unpacked: Unpacked, *, name=b"it", kind=1, guid=None, location=None, logging=0) -> None:
-        self.unpacked, self.messages, self.categories = unpacked, [], []
+        self.unpacked, self.kind, self.messages, self.categories = unpacked, kind, [], []
         library = unpacked.library
-        for function in ("fmi2SetupExperiment", "fmi2DoStep"):
-            getattr(library, function).argtypes = {
-                "fmi2SetupExperiment": [
-                    ct.c_void_p,
-                    ct.c_int,
-                    ct.c_double,
-                    ct.c_double,
-                    ct.c_int,
-                    ct.c_double,
-                ],
-                "fmi2DoStep": [ct.c_void_p, ct.c_double, ct.c_double, ct.c_int],
-            }[function]
-        library.fmi2Instantiate.restype = ct.c_void_p
         self.logger = LOGGER(self._log)
         self.callbacks = Callbacks(self.logger, None, None, None, None)
         guid = unpacked.description.guid.encode() if guid is None else guid
@@ -87,6 +77,31 @@ class Fmu:
         assert self.call("fmi2SetupExperiment", 0, 0.0, start, stop is not None, stop or 0.0) == OK
         assert self.call("fmi2EnterInitializationMode") == OK
         assert self.call("fmi2ExitInitializationMode") == OK
+
+    def enter(self, phase: str) -> None:
+        """Goes from instantiated to a phase of either interface, by way of those before it."""
+        calls = {
+            "initialization": [("SetupExperiment", 0, 0.0, 0.0, 0, 0.0), ("EnterInitializationMode",)],
+            "stepping": [("ExitInitializationMode",)],
+            "event": [("ExitInitializationMode",)],
+            "continuous": [("NewDiscreteStates", (ct.c_double * 4)()), ("EnterContinuousTimeMode",)],
+            "terminated": [("Terminate",)],
+        }
+        exchange = ["initialization", "event", "continuous", "terminated"]
+        way = exchange if self.kind == 0 else ["initialization", "stepping", "terminated"]
+        for step in way[: way.index(phase) + 1] if phase != "instantiated" else []:
+            for function, *arguments in calls[step]:
+                assert self.call(f"fmi2{function}", *arguments) == OK, self.messages
+
+    def serialised(self) -> bytes:
+        """The whole state, as bytes."""
+        state, size = ct.c_void_p(), ct.c_size_t()
+        assert self.call("fmi2GetFMUstate", ct.byref(state)) == OK, self.messages
+        assert self.call("fmi2SerializedFMUstateSize", state, ct.byref(size)) == OK
+        content = ct.create_string_buffer(size.value)
+        assert self.call("fmi2SerializeFMUstate", state, content, size) == OK
+        assert self.call("fmi2FreeFMUstate", ct.byref(state)) == OK
+        return content.raw
 
     def references(self, names) -> ct.Array:
         numbers = [self.reference[n] if isinstance(n, str) else n for n in names]

@@ -6,6 +6,7 @@ from gearpath.network.modal import ModalNetwork
 from gearpath.network.records import JointRows, Load, Output
 
 ELASTIC, RIGID, CASING = 20, 4, 3
+K2, C2 = np.array([[6e7, -9e5], [-9e5, 8e4]]), np.array([[300.0, 4.0], [4.0, 0.9]])
 N = RIGID + ELASTIC + CASING
 
 
@@ -75,3 +76,19 @@ def gearbox(seed: int = 1, *, excitation="mesh.transmission_error", mesh_moves_b
         excitation=excitation,
         paths=tuple(f"bearing_{i}" for i in range(1, 5)),
     )
+
+
+def changed(network: ModalNetwork) -> ModalNetwork:
+    """The network with the parameters CHANGES."""
+    other = network.with_joint("bearing_1", K2, C2).with_joint("mount_2", 4e6 * np.ones((1, 1)), np.zeros((1, 1)))
+    object.__setattr__(other, "modal_damping", {"gear_train": 0.07})
+    return other
+
+
+CHANGES = {
+    "bearing_1.stiffness": K2,
+    "bearing_1.damping": C2,
+    "mount_2.stiffness": 4e6,
+    "mount_2.damping": 0.0,
+    "gear_train.modal_damping": 0.07,
+}

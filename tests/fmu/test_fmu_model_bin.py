@@ -1,4 +1,7 @@
-"""model.bin missing, cut or altered anywhere: refused with a sentence, never a crash."""
+"""model.bin missing, cut or altered anywhere: refused with a sentence, never a crash.
+
+The layout is written down once more here, from the format as fmu_src/gp_model.c describes it.
+"""
 
 import math
 import struct
@@ -8,7 +11,28 @@ import pytest
 from fmu_driver import Fmu
 
 from gearpath.fmu.binary import payload
-from gearpath.fmu.variables import variable_table
+from gearpath.fmu.native_table import native_table
+
+HEADER, COUNTS = 72, 16
+DATA = HEADER + 4 * COUNTS  # where the doubles begin
+UNSIGNED_KINDS, RECORDS = ("pairs", "group", "is_error", "rotation"), {"joint": 6, "output": 4, "variable": 6}
+
+
+def layout(content: bytes):
+    """The number of doubles, the (start, integers) of each index section, and the start of the text."""
+    names = ["N", "groups", "joints", "rows", "blocks", "loads", "outputs", "variables", "excitation"]
+    names += ["text", "tones", "source", "pairs"]
+    n = dict(zip(names, struct.unpack_from("<13I", content, HEADER)))
+    N = n["N"]
+    doubles = 3 + 3 * N + n["groups"] + 2 * n["rows"] * N + 2 * n["blocks"] + 2 * n["loads"] * N + n["outputs"] * N
+    doubles += 4 * n["pairs"] + 2 * n["pairs"] * N + 4 * n["tones"]
+    at, sections = DATA + 8 * doubles, {}
+    lengths = [n["pairs"], N, n["loads"], n["rows"], 6 * n["joints"], 4 * n["outputs"], 6 * n["variables"]]
+    for name, length in zip((*UNSIGNED_KINDS, *RECORDS), lengths):
+        sections[name] = (at, length)
+        at += (4 * length + 7) // 8 * 8
+    assert at + (n["text"] + 7) // 8 * 8 == len(content)
+    return n, doubles, sections, at
 
 
 @pytest.fixture
@@ -69,38 +93,55 @@ def test_model_bin_bit_flips(model_bin):
 
 
 def test_model_bin_wrong_numbers(model_bin):
-    """Every double NaN in turn, sealed: refused."""
+    """Doubles NaN or infinite in turn, sealed: refused; all of the first, and of each section some."""
     original, attempt = model_bin
-    counts = struct.unpack_from("<12I", original, 72)
-    N, groups, _, rows, blocks, loads, outputs = counts[:7]
-    doubles = 1 + 2 * N + groups + 2 * rows * N + 2 * blocks + 2 * loads * N + outputs * N
-    for i in [*range(2 * N + 5), *range(2 * N + 5, doubles, 53), doubles - 1]:
+    n, doubles, _, _ = layout(original)
+    first = 3 + 3 * n["N"] + n["groups"]
+    for i in [*range(first + 2), *range(first + 2, doubles, 53), doubles - 1]:
         for bad in (math.nan, math.inf):
             content = bytearray(original)
-            struct.pack_into("<d", content, 120 + 8 * i, bad)
-            assert not attempt(sealed(bytes(content)))[0], (i, bad)
+            struct.pack_into("<d", content, DATA + 8 * i, bad)
+            alive, message = attempt(sealed(bytes(content)))
+            assert not alive, (i, bad)
+            assert "out of range" in message
 
 
 def test_model_bin_wrong_indices(model_bin):
-    """Every integer of every record replaced by a large one, sealed: refused or harmless, never a crash."""
+    """Every integer of every record replaced by a large one, sealed: refused, never a crash.
+
+    Nothing but padding is not looked at, and a name may begin anywhere in the text.
+    """
     original, attempt = model_bin
-    counts = struct.unpack_from("<12I", original, 72)
-    N, groups, joints, rows, blocks, loads, outputs, variables = counts[:8]
-    start = 120 + 8 * (1 + 2 * N + groups + 2 * rows * N + 2 * blocks + 2 * loads * N + outputs * N)
-    text = -(-counts[9] // 8) * 8
-    integers = [*range(72, 120, 4), *range(start, len(original) - text, 4)]
-    assert len(integers) > N + 6 * joints + 4 * outputs + 4 * variables
-    padding = 0
-    for at in integers:
+    n, _, sections, text = layout(original)
+    padding, names = set(), set()
+    for name, (at, length) in sections.items():
+        if length % 2:
+            padding.add(at + 4 * length)
+        if name in RECORDS and name != "output":
+            names |= {at + 4 * k for k in range(4, length, RECORDS[name])}
+    start, variables = sections["pairs"][0], sections["variable"][0]
+    assert padding  # the case is not trivial
+    # 13 and 6 have no common divisor: every field of a variable, over many variables
+    for at in [*range(HEADER, DATA, 4), *range(start, variables, 4), *range(variables, text, 4 * 13)]:
         for bad in (0xFFFFFFFF, 0x7FFFFFFE, 0x01000000, 8191):
             content = bytearray(original)
             struct.pack_into("<I", content, at, bad)
-            alive, _ = attempt(sealed(bytes(content)))
-            padding += alive
-    assert padding <= 4 * 3  # only the padding of odd-length index sections is not looked at
+            alive, message = attempt(sealed(bytes(content)))
+            harmless = at in padding or (at in names and bad < n["text"])
+            assert alive == harmless, (at, bad, message)
+
+
+def test_model_bin_of_another_version_says_what_to_do(model_bin):
+    original, attempt = model_bin
+    for version in (0, 1, 3):
+        content = bytearray(original)
+        struct.pack_into("<I", content, 8, version)
+        alive, message = attempt(sealed(bytes(content)))
+        assert not alive
+        assert "another version; export the FMU again" in message
 
 
 def test_payload_is_what_the_file_holds(unpacked, network):
     content = (unpacked.folder / "resources" / "model.bin").read_bytes()
-    assert content[72:] == payload(network, variable_table(network, 500.0), 500.0)
+    assert content[72:] == payload(network, native_table(network, 500.0), 500.0)
     assert content[32:72].rstrip(b"\0").decode() == unpacked.description.guid

@@ -1,5 +1,6 @@
 """Whatever is done to a file, it loads or is refused with one sentence."""
 
+import tomllib
 from datetime import date
 from pathlib import Path
 
@@ -9,7 +10,9 @@ from hypothesis import strategies as st
 from gearpath.errors import InputError, ModelError
 from gearpath.modelfile import Model, load
 
-BASE = load(Path(__file__).parent / "base.toml").to_dict()
+HERE = Path(__file__).parent
+SOURCE = tomllib.loads((HERE / "source_table.toml").read_text(encoding="utf-8"))
+BASE = load(HERE / "base.toml").to_dict() | SOURCE
 
 
 def paths(data, start=()):

@@ -12,6 +12,8 @@ HERE = Path(__file__).parent
 BASE = (HERE / "base.toml").read_text(encoding="utf-8")
 STRUCTURES = (HERE / "base_structures.toml").read_text(encoding="utf-8")
 CASES = tomllib.loads((HERE / "bad_files.toml").read_text(encoding="utf-8"))["case"]
+SOURCE = f"{BASE}\n{(HERE / 'source_table.toml').read_text(encoding='utf-8')}"
+SOURCE_CASES = tomllib.loads((HERE / "bad_sources.toml").read_text(encoding="utf-8"))["case"]
 STRUCTURE_CASES = tomllib.loads((HERE / "bad_structures.toml").read_text(encoding="utf-8"))["case"]
 
 
@@ -23,6 +25,11 @@ def test_bad_file(case, tmp_path):
 @pytest.mark.parametrize("case", STRUCTURE_CASES, ids=[case["message"].split(": ")[0] for case in STRUCTURE_CASES])
 def test_bad_file_with_structures(case, tmp_path):
     check(STRUCTURES, case, tmp_path / "bad.toml")
+
+
+@pytest.mark.parametrize("case", SOURCE_CASES, ids=[case["message"].split(": ")[0] for case in SOURCE_CASES])
+def test_bad_source(case, tmp_path):
+    check(SOURCE, case, tmp_path / "bad.toml")
 
 
 def test_base_of_structures_is_good(tmp_path):

@@ -21,7 +21,8 @@ TABLES = {
     for table in base.__subclasses__()
 }
 VALIDATOR = Draft202012Validator(SCHEMA)
-BASE = (HERE / "base.toml").read_text(encoding="utf-8")
+BASE, SOURCE = ((HERE / name).read_text(encoding="utf-8") for name in ("base.toml", "source_table.toml"))
+WITH_SOURCE = f"{BASE}\n{SOURCE}"
 
 
 def test_is_a_schema():
@@ -40,6 +41,10 @@ def test_stored_copy_is_the_generated_one():
 )
 def test_models_are_valid(path):
     VALIDATOR.validate(tomllib.loads(path.read_text(encoding="utf-8")))
+
+
+def test_a_source_is_valid():
+    VALIDATOR.validate(tomllib.loads(WITH_SOURCE))
 
 
 def test_every_table_is_there():
@@ -89,6 +94,7 @@ def test_every_number_has_a_unit():
         ("PlateTable", "modal_damping"),
         ("MaterialTable", "poisson_ratio"),
         ("ShaftTable", "shear_coefficient"),
+        ("SidebandTable", "order"),
     }
 
 
@@ -116,11 +122,16 @@ def test_defaults_are_valid():
         ('mesh = "train.mesh"', 'mesh = "train.mesh"\npoint = "casing"\ndof = "uy"'),
         ("elements = [4, 4]", "elements = 0"),
         ("stiffness = 1.0e7", "stiffness = [1.0e7]"),
+        ("speed = 3000.0\n", ""),
+        ("teeth = 23", "teeth = 0.5"),
+        ("phase = -0.7", "phase = -40.0"),
+        ("harmonic = 2, order", "order"),
+        ("\nharmonics = ", "\ntones = "),
     ],
 )
 def test_schema_refuses(old, new):
-    assert BASE.count(old) == 1
-    assert not VALIDATOR.is_valid(tomllib.loads(BASE.replace(old, new)))
+    assert WITH_SOURCE.count(old) == 1
+    assert not VALIDATOR.is_valid(tomllib.loads(WITH_SOURCE.replace(old, new)))
 
 
 def test_file_table_is_the_root():

@@ -31,3 +31,17 @@ def test_many_small_steps_equal_one_large_step():
     for k in range(10_000):
         x = small.step(x, np.array([1.0 + 4.0 * k * 1e-4]), np.array([4.0 * 1e-4]))
     np.testing.assert_allclose(x, expected, rtol=1e-9)
+
+
+def test_units_of_the_inputs_do_not_matter():
+    """An input in tiny units has a huge B: the responses stay as accurate as with any other, over many periods too."""
+    w, h, factor = 2 * np.pi * 5e5, 5e-5, 1e15
+    stiff = np.array([[0.0, w], [-w, -2 * ZETA * w]])
+    wd = np.sqrt(1 - ZETA**2)
+    decay = np.exp(-ZETA * w * h) * (np.cos(wd * w * h) + ZETA / wd * np.sin(wd * w * h))
+    huge, plain = discretise(stiff, factor * B, h), discretise(stiff, B, h)
+    assert huge.transition[0, 0] == pytest.approx(decay, abs=1e-12)
+    assert huge.held[0, 0] * w / factor == pytest.approx(1 - decay, rel=1e-12)
+    np.testing.assert_allclose(huge.held, factor * plain.held, rtol=1e-12)
+    np.testing.assert_allclose(huge.ramp, factor * plain.ramp, rtol=1e-12)
+    assert not discretise(stiff, 0 * B, h).held.any()

@@ -9,13 +9,15 @@ from numpy.typing import ArrayLike
 
 from ..components.dofs import is_rotation
 from ..errors import InputError
+from ..network.coupled_modes import CoupledModes, coupled_modes
 from ..network.modal import ModalNetwork
+from ..network.time_twin import state_scale
 from ..numerics.arrays import Real
+from .native_table import state_nominals
 from .variables import Variable
 
-MAGIC, VERSION, BYTE_ORDER = b"GEARPATH", 1, 0x01020304
+MAGIC, VERSION, BYTE_ORDER = b"GEARPATH", 2, 0x01020304
 NONE = 0x7FFFFFFF  # "no such index", GP_NONE
-RIGID_SCALE = 2.0 * np.pi * 1000.0  # rad/s; scales q where a mode has no eigenfrequency, so that A is balanced
 QUANTITIES = ("displacement", "velocity", "acceleration", "force", "power")  # GP_DISPLACEMENT ...
 LARGEST_COUNT = 1 << 13  # of modes, joints, loads ...: what the runtime accepts
 
@@ -26,50 +28,92 @@ def payload(network: ModalNetwork, variables: Sequence[Variable], frequency: flo
     Raises:
         InputError: a number is not finite, or the network is too large for the runtime.
     """
-    N = len(network.eigenvalues)
-    P_source = np.vstack([joint.source for joint in network.joints])
-    P_receiver = np.vstack([joint.receiver for joint in network.joints])
-    names, text = _names([joint.name for joint in network.joints])
-    blocks = [len(joint.dofs) ** 2 for joint in network.joints]
-    counts = (
-        N,
-        len(network.modal_damping),
-        len(network.joints),
-        len(P_source),
-        sum(blocks),
-        len(network.loads),
+    reals = _reals(network, frequency)
+    _check_finite(reals)
+    modes = coupled_modes(network)
+    names, text = _names([joint.name for joint in network.joints] + [variable.name for variable in variables])
+    counts = _counts(network, len(variables), len(text), modes is not None)
+    parts = [struct.pack("<16I", *counts)]
+    form = [*_modal_form(modes), *_tones(network)]
+    _check_finite(form)
+    for array in (*reals, *form):
+        parts.append(np.ascontiguousarray(array, dtype="<f8").tobytes())
+    kinds = [int(kind) for kind in modes.kinds] if modes else []
+    for index in (kinds, *_indices(network, variables, names)):
+        parts.append(np.asarray(index, dtype="<u4").tobytes())
+    return b"".join(_padded(part) for part in [*parts, text])
+
+
+def _check_finite(arrays: Sequence[Real]) -> None:
+    if not all(np.isfinite(array).all() for array in arrays):
+        raise InputError("a matrix of the network holds a number that is not finite, so no FMU can be made of it")
+
+
+def _counts(network: ModalNetwork, variables: int, text: int, has_modes: bool) -> tuple[int, ...]:
+    N, loads = len(network.eigenvalues), [load.name for load in network.loads]
+    sizes = [len(joint.dofs) for joint in network.joints]
+    small = (N, len(network.modal_damping), len(sizes), sum(sizes))
+    if max(*small, len(loads), len(network.outputs)) > LARGEST_COUNT:
+        raise InputError(f"the network is too large for an FMU (at most {LARGEST_COUNT} modes, joints or outputs)")
+    source = network.source
+    return (
+        *small,
+        sum(size**2 for size in sizes),
+        len(loads),
         len(network.outputs),
-        len(variables),
-        [load.name for load in network.loads].index(network.excitation),
-        len(text),
+        variables,
+        loads.index(network.excitation),
+        text,
+        len(source.tones) if source else 0,
+        loads.index(source.load) if source else NONE,
+        N if has_modes else 0,
+        0,
         0,
         0,
     )
-    if max(*counts[:4], *counts[5:7]) > LARGEST_COUNT:
-        raise InputError(f"the network is too large for an FMU (at most {LARGEST_COUNT} modes, joints or outputs)")
+
+
+def _reals(network: ModalNetwork, frequency: float) -> list[Real]:
+    N, source = len(network.eigenvalues), network.source
     zero = np.zeros(N)
-    reals = [
-        np.array([frequency]),
+    return [
+        np.array([frequency, source.speed if source else 0.0, source.teeth if source else 1.0]),
         network.eigenvalues,
-        np.where(network.eigenvalues > 0, np.sqrt(network.eigenvalues), RIGID_SCALE),
+        state_scale(network),
+        state_nominals(network),
         np.array(list(network.modal_damping.values())),
-        P_source,
-        P_receiver,
+        np.vstack([joint.source for joint in network.joints]),
+        np.vstack([joint.receiver for joint in network.joints]),
         np.concatenate([_symmetric(joint.stiffness).ravel() for joint in network.joints]),
         np.concatenate([_symmetric(joint.damping).ravel() for joint in network.joints]),
         np.vstack([load.column for load in network.loads]),
         np.vstack([zero if load.mesh_displacement is None else load.mesh_displacement for load in network.loads]),
         np.vstack([zero if output.row is None else output.row for output in network.outputs] or [np.zeros((0, N))]),
     ]
-    starts = np.cumsum([0, *(len(joint.dofs) for joint in network.joints)])
-    block_starts = np.cumsum([0, *blocks])
+
+
+def _modal_form(modes: CoupledModes | None) -> list[Real]:
+    if modes is None:
+        return [np.zeros(0), np.zeros(0)]
+    return [np.hstack([modes.poles, modes.norms]), modes.shapes]
+
+
+def _tones(network: ModalNetwork) -> list[Real]:
+    tones = network.source.tones if network.source else ()
+    return [np.array([(t.harmonic, t.shift, t.amplitude, t.phase) for t in tones]).reshape(-1, 4)]
+
+
+def _indices(network: ModalNetwork, variables: Sequence[Variable], names: Sequence[int]) -> list[ArrayLike]:
+    """The index sections behind the kinds of mode pairs."""
+    sizes = [len(joint.dofs) for joint in network.joints]
+    starts, block_starts = np.cumsum([0, *sizes]), np.cumsum([0, *(size**2 for size in sizes)])
     joints = [joint.name for joint in network.joints]
-    indices: list[ArrayLike] = [
+    return [
         _groups(network),
         [load.is_transmission_error for load in network.loads],
         [is_rotation(dof) for joint in network.joints for dof in joint.dofs],
         [
-            (starts[j], len(joint.dofs), block_starts[j], joint.name in network.paths, names[j], 0)
+            (starts[j], sizes[j], block_starts[j], joint.name in network.paths, names[j], 0)
             for j, joint in enumerate(network.joints)
         ],
         [
@@ -81,15 +125,8 @@ def payload(network: ModalNetwork, variables: Sequence[Variable], frequency: flo
             )
             for output in network.outputs
         ],
-        [(int(v.kind), *v.index) for v in variables],
+        [(int(v.kind), *v.index, names[len(joints) + i], 0) for i, v in enumerate(variables)],
     ]
-    parts = [struct.pack("<12I", *counts)]
-    for array in reals:
-        if not np.isfinite(array).all():
-            raise InputError("a matrix of the network holds a number that is not finite, so no FMU can be made of it")
-        parts.append(np.ascontiguousarray(array, dtype="<f8").tobytes())
-    parts += [np.asarray(index, dtype="<u4").tobytes() for index in indices]
-    return b"".join(_padded(part) for part in [*parts, text])
 
 
 def model_file(guid: str, content: bytes) -> bytes:

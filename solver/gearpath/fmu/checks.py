@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..numerics.arrays import Complex, Real
+from .conformance import Finding
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,7 @@ class ValidationReport:
     checks: tuple[Check, ...]
     comparisons: tuple[Comparison, ...] = ()
     notes: Mapping[str, str] = field(default_factory=dict)
+    findings: tuple[Finding, ...] = ()  # of the conformance check
 
     @property
     def passed(self) -> bool:

@@ -1,37 +1,19 @@
-"""modelDescription.xml of FMI 2.0."""
+"""modelDescription.xml of FMI 2.0, and what both versions of FMI share."""
 
-import re
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from ..errors import InputError
+from .units import DISPLAY, FACTORS, TYPES, unit_exponents
 from .variables import Kind, Variable
 
-# SI base units (and rad) of the named units: exponents of kg, m, s, rad.
-_EXPONENTS = {
-    "1": {},
-    "kg": {"kg": 1},
-    "m": {"m": 1},
-    "s": {"s": 1},
-    "rad": {"rad": 1},
-    "N": {"kg": 1, "m": 1, "s": -2},
-    "W": {"kg": 1, "m": 2, "s": -3},
-    "Hz": {"s": -1},
-}
-# Shown instead of the SI unit by tools that can: display value = factor * value.
-_DISPLAY = {
-    "m": ("um", 1e6),
-    "m/s": ("mm/s", 1e3),
-    "W": ("mW", 1e3),
-    "N/m": ("kN/mm", 1e-6),
-}
-_TOKEN = re.compile(r"\(|\)|\.|/|[A-Za-z1]+|-?\d+")
-_LOG_CATEGORIES = {
+LOG_CATEGORIES = {
     "logStatusError": "What went wrong, a sentence for each failure; always logged",
     "logEvents": "New discretisations, for a new step size or new parameters",
     "logAll": "All of these",
 }
+_TRANSFERS = (Kind.FRF_REAL, Kind.FRF_IMAG)
+_CALCULATED = ("output", "local", "calculatedParameter")  # where there is no start value
 
 
 @dataclass(frozen=True)
@@ -43,153 +25,184 @@ class Experiment:
     step_size: float
 
 
-def unit_exponents(unit: str) -> dict[str, int]:
-    """Exponents of the SI base units and rad of a unit such as "N.m/rad", "m/s2" or "(m/s)/(N.m)".
+@dataclass(frozen=True)
+class Identity:
+    """What a model description says beside its variables."""
 
-    A slash divides by the single factor or parenthesis behind it.
+    name: str
+    model_identifier: str
+    description: str
+    guid: str
+    version: str  # of Gearpath
+    experiment: Experiment
+    sources: Sequence[str]  # C files in sources/
+
+
+def model_description(variables: Sequence[Variable], identity: Identity) -> bytes:
+    """The XML file of FMI 2.0: all capabilities and dependencies written out, no date in it.
+
+    Model exchange is offered where states are among the variables.
     """
-    tokens, position = _TOKEN.findall(unit), 0
-
-    def factor() -> dict[str, int]:
-        nonlocal position
-        token = tokens[position]
-        position += 1
-        if token == "(":
-            inner = product()
-            position += 1
-            return inner
-        base = _EXPONENTS[token]
-        if position < len(tokens) and re.fullmatch(r"-?\d+", tokens[position]) and token != "1":
-            power = int(tokens[position])
-            position += 1
-            return {name: power * exponent for name, exponent in base.items()}
-        return dict(base)
-
-    def product() -> dict[str, int]:
-        nonlocal position
-        result = factor()
-        while position < len(tokens) and tokens[position] in "./":
-            sign = 1 if tokens[position] == "." else -1
-            position += 1
-            for name, exponent in factor().items():
-                result[name] = result.get(name, 0) + sign * exponent
-        return result
-
-    try:
-        result = product()
-    except (IndexError, KeyError) as error:
-        raise InputError(f"the unit {unit!r} is not understood; use kg, m, s, rad, N, W and Hz") from error
-    if position != len(tokens) or "".join(tokens) != unit:
-        raise InputError(f"the unit {unit!r} is not understood; use a form such as N.m/rad or m/s2")
-    return {name: result[name] for name in ("kg", "m", "s", "rad") if result.get(name)}
-
-
-def model_description(
-    variables: Sequence[Variable],
-    *,
-    name: str,
-    model_identifier: str,
-    description: str,
-    guid: str,
-    version: str,
-    experiment: Experiment,
-    sources: Sequence[str],
-) -> bytes:
-    """The XML file: co-simulation, all capabilities and dependencies written out, no date in it."""
     root = ET.Element(
         "fmiModelDescription",
         fmiVersion="2.0",
-        modelName=name,
-        guid=guid,
-        description=description,
-        generationTool=f"Gearpath {version}",
+        modelName=identity.name,
+        guid=identity.guid,
+        description=identity.description,
+        generationTool=f"Gearpath {identity.version}",
         variableNamingConvention="structured",
         numberOfEventIndicators="0",
     )
-    slave = ET.SubElement(
-        root,
-        "CoSimulation",
-        modelIdentifier=model_identifier,
-        needsExecutionTool="false",
-        canHandleVariableCommunicationStepSize="true",
-        canInterpolateInputs="true",
-        maxOutputDerivativeOrder="0",
-        canRunAsynchronuously="false",
-        canBeInstantiatedOnlyOncePerProcess="false",
-        canNotUseMemoryManagementFunctions="true",
-        canGetAndSetFMUstate="false",
-        canSerializeFMUstate="false",
-        providesDirectionalDerivative="false",
-    )
-    files = ET.SubElement(slave, "SourceFiles")
-    for file in sources:
-        ET.SubElement(files, "File", name=file)
-    _units(root, variables)
-    categories = ET.SubElement(root, "LogCategories")
-    for category, meaning in _LOG_CATEGORIES.items():
-        ET.SubElement(categories, "Category", name=category, description=meaning)
-    ET.SubElement(
-        root,
-        "DefaultExperiment",
-        startTime=repr(experiment.start_time),
-        stopTime=repr(experiment.stop_time),
-        stepSize=repr(experiment.step_size),
-    )
+    _interfaces(root, identity, any(variable.kind is Kind.STATE for variable in variables))
+    add_units(root, variables, "SimpleType")
+    add_categories(root)
+    add_experiment(root, identity.experiment)
     _variables(root, variables)
     _structure(root, variables)
+    return as_file(root)
+
+
+def _interfaces(root: ET.Element, identity: Identity, exchange: bool) -> None:
+    common = {
+        "modelIdentifier": identity.model_identifier,
+        "needsExecutionTool": "false",
+        "canBeInstantiatedOnlyOncePerProcess": "false",
+        "canNotUseMemoryManagementFunctions": "true",
+        "canGetAndSetFMUstate": "true",
+        "canSerializeFMUstate": "true",
+        "providesDirectionalDerivative": "true",
+    }
+    stepping = {
+        "canHandleVariableCommunicationStepSize": "true",
+        "canInterpolateInputs": "true",
+        "maxOutputDerivativeOrder": "0",
+        "canRunAsynchronuously": "false",
+    }
+    kinds = [ET.SubElement(root, "CoSimulation", {**common, **stepping})]
+    if exchange:
+        element = ET.Element("ModelExchange", {**common, "completedIntegratorStepNotNeeded": "true"})
+        root.insert(0, element)
+        kinds.insert(0, element)
+    for kind in kinds:
+        files = ET.SubElement(kind, "SourceFiles")
+        for file in identity.sources:
+            ET.SubElement(files, "File", name=file)
+
+
+def add_units(root: ET.Element, variables: Sequence[Variable], element: str) -> None:
+    """UnitDefinitions, and TypeDefinitions with elements of the name that the version of FMI has for them."""
+    units = sorted({variable.unit for variable in variables if variable.unit is not None})
+    definitions = ET.SubElement(root, "UnitDefinitions")
+    for unit in units:
+        parent = ET.SubElement(definitions, "Unit", name=unit)
+        exponents = {name: str(exponent) for name, exponent in unit_exponents(unit).items()}
+        if unit in FACTORS:
+            exponents["factor"] = repr(FACTORS[unit])
+        ET.SubElement(parent, "BaseUnit", exponents)
+        if unit in DISPLAY:
+            display, factor = DISPLAY[unit]
+            ET.SubElement(parent, "DisplayUnit", name=display, factor=repr(factor))
+    used = {variable.unit for variable in variables if declared_type(variable)}
+    types = ET.SubElement(root, "TypeDefinitions")
+    for unit, (name, quantity) in TYPES.items():
+        if unit not in used:
+            continue
+        attributes = {"quantity": quantity, "unit": unit}
+        if unit in DISPLAY:
+            attributes["displayUnit"] = DISPLAY[unit][0]
+        if element == "SimpleType":
+            ET.SubElement(ET.SubElement(types, element, name=name), "Real", attributes)
+        else:
+            ET.SubElement(types, element, {"name": name, **attributes})
+    if not len(types):
+        root.remove(types)
+
+
+def declared_type(variable: Variable) -> str | None:
+    """Name of the type of a variable: none for transfers and power ratios."""
+    if variable.unit is None or variable.kind in _TRANSFERS:
+        return None
+    return TYPES[variable.unit][0] if variable.unit in TYPES else None
+
+
+def add_categories(root: ET.Element) -> None:
+    """What can be logged."""
+    categories = ET.SubElement(root, "LogCategories")
+    for category, meaning in LOG_CATEGORIES.items():
+        ET.SubElement(categories, "Category", name=category, description=meaning)
+
+
+def add_experiment(root: ET.Element, experiment: Experiment) -> None:
+    """The default experiment."""
+    times = (experiment.start_time, experiment.stop_time, experiment.step_size)
+    ET.SubElement(root, "DefaultExperiment", dict(zip(("startTime", "stopTime", "stepSize"), map(repr, times))))
+
+
+def as_file(root: ET.Element) -> bytes:
+    """The bytes of an XML file, indented."""
     ET.indent(root, " ")
     content: bytes = ET.tostring(root, encoding="UTF-8", xml_declaration=True)
     return content + b"\n"
 
 
-def _units(root: ET.Element, variables: Sequence[Variable]) -> None:
-    definitions = ET.SubElement(root, "UnitDefinitions")
-    for unit in sorted({variable.unit for variable in variables}):
-        element = ET.SubElement(definitions, "Unit", name=unit)
-        exponents = {name: str(exponent) for name, exponent in unit_exponents(unit).items()}
-        ET.SubElement(element, "BaseUnit", exponents)
-        if unit in _DISPLAY:
-            display, factor = _DISPLAY[unit]
-            ET.SubElement(element, "DisplayUnit", name=display, factor=repr(factor))
+def roles(variable: Variable) -> dict[str, str]:
+    """Causality, variability and initial: the combinations that both versions of FMI allow."""
+    attributes: dict[str, str] = {"causality": variable.causality}
+    tunable = variable.causality in ("parameter", "calculatedParameter")
+    attributes["variability"] = "tunable" if tunable else "continuous"
+    if variable.causality == "parameter" or (variable.causality == "local" and variable.start is not None):
+        attributes["initial"] = "exact"
+    elif variable.causality in _CALCULATED:
+        attributes["initial"] = "calculated"
+    return attributes
+
+
+def numbers(variable: Variable) -> dict[str, str]:
+    """Declared type, unit, displayed unit, range, nominal and start value."""
+    attributes = {}
+    kind = declared_type(variable)
+    if kind is not None:
+        attributes["declaredType"] = kind
+    if variable.unit is not None:
+        attributes["unit"] = variable.unit
+        if variable.unit in DISPLAY and variable.kind not in _TRANSFERS:
+            attributes["displayUnit"] = DISPLAY[variable.unit][0]
+    for attribute, value in (("min", variable.minimum), ("max", variable.maximum), ("nominal", variable.nominal)):
+        if value is not None:
+            attributes[attribute] = repr(float(value))
+    start = variable.start
+    if start is not None:
+        values = start if isinstance(start, tuple) else (start,)
+        attributes["start"] = " ".join(repr(float(value)) for value in values)
+    return attributes
 
 
 def _variables(root: ET.Element, variables: Sequence[Variable]) -> None:
     parent = ET.SubElement(root, "ModelVariables")
+    place = {variable.name: i for i, variable in enumerate(variables, start=1)}
     for reference, variable in enumerate(variables):
-        attributes = {
-            "name": variable.name,
-            "valueReference": str(reference),
-            "description": variable.description,
-            "causality": variable.causality,
-            "variability": "tunable" if variable.causality == "parameter" else "continuous",
-        }
-        if variable.causality == "parameter":
-            attributes["initial"] = "exact"
-        if variable.causality == "output":
-            attributes["initial"] = "calculated"
-        real = {"unit": variable.unit}
-        if variable.unit in _DISPLAY and variable.kind is not Kind.FRF_REAL and variable.kind is not Kind.FRF_IMAG:
-            real["displayUnit"] = _DISPLAY[variable.unit][0]
-        for attribute, value in (
-            ("min", variable.minimum),
-            ("max", variable.maximum),
-            ("nominal", variable.nominal),
-            ("start", variable.start),
-        ):
-            if value is not None:
-                real[attribute] = repr(float(value))
-        ET.SubElement(ET.SubElement(parent, "ScalarVariable", attributes), "Real", real)
+        attributes = {"name": variable.name, "valueReference": str(reference), "description": variable.description}
+        element = ET.SubElement(parent, "ScalarVariable", {**attributes, **roles(variable)})
+        real = numbers(variable)
+        if variable.derivative_of is not None:
+            real["derivative"] = str(place[variable.derivative_of])
+        ET.SubElement(element, "Real", real)
 
 
 def _structure(root: ET.Element, variables: Sequence[Variable]) -> None:
-    """Outputs and initial unknowns; FMI 2 counts the variables from 1."""
+    """Outputs, derivatives and initial unknowns; FMI 2 counts the variables from 1."""
     place = {variable.name: i for i, variable in enumerate(variables, start=1)}
     structure = ET.SubElement(root, "ModelStructure")
-    for section in ("Outputs", "InitialUnknowns"):
+    sections: Mapping[str, Sequence[Variable]] = {
+        "Outputs": [v for v in variables if v.causality == "output"],
+        "Derivatives": [v for v in variables if v.derivative_of is not None],
+        "InitialUnknowns": [v for v in variables if v.causality in _CALCULATED and v.start is None],
+    }
+    for section, unknowns in sections.items():
+        if not unknowns:
+            continue
         parent = ET.SubElement(structure, section)
-        for variable in variables:
-            if variable.causality != "output":
-                continue
-            names = variable.dependencies if section == "Outputs" else variable.initial_dependencies
+        for variable in unknowns:
+            names = variable.initial_dependencies if section == "InitialUnknowns" else variable.dependencies
             places = sorted(place[name] for name in names)
             ET.SubElement(parent, "Unknown", index=str(place[variable.name]), dependencies=" ".join(map(str, places)))

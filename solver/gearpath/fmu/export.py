@@ -11,7 +11,7 @@ from .native import export_native
 from .python_kind import export_python
 
 KINDS = ("native", "python")
-VERSIONS = ("2.0",)
+VERSIONS = ("2.0", "3.0")
 
 
 def model_identifier(name: str) -> str:
@@ -20,16 +20,26 @@ def model_identifier(name: str) -> str:
     return identifier if re.match(r"[A-Za-z_]", identifier) else f"model_{identifier}"
 
 
-def export(system: System, path: Path, *, fmi: str = "2.0", kind: str = "native", frequency: float = 1000.0) -> Path:
+def export(
+    system: System,
+    path: Path,
+    *,
+    fmi: str = "2.0",
+    kind: str = "native",
+    frequency: float = 1000.0,
+    documentation: bool = True,
+) -> Path:
     """Write the FMU to `path` (a temporary file is moved there at the end) and return the path.
 
-    `frequency` (Hz) is the start value of the input of that name. Raises InputError for an unknown kind or version
-    of FMI and for a path that cannot be written.
+    `frequency` (Hz) is the start value of the input of that name. `documentation` adds plots and reference results to
+    the native kind. Raises InputError for an unknown kind or version of FMI and for a path that cannot be written.
     """
     if kind not in KINDS:
         raise InputError(f"kind: there is no kind {kind!r} of FMU; use one of: {', '.join(KINDS)}")
     if fmi not in VERSIONS:
         raise InputError(f"fmi: version {fmi!r} is not available; use one of: {', '.join(VERSIONS)}")
+    if kind == "python" and fmi != "2.0":
+        raise InputError("fmi: pythonfmu makes FMUs of FMI 2.0 only; use the native kind for FMI 3.0")
     if path.is_dir():
         raise InputError(f"{path}: is a folder; give the name of the FMU file to write")
     try:
@@ -44,7 +54,8 @@ def export(system: System, path: Path, *, fmi: str = "2.0", kind: str = "native"
     }
     try:
         if kind == "native":
-            return export_native(assemble(system).modal().viscous(), path, **settings)  # type: ignore[arg-type]
+            network = assemble(system).modal().viscous()
+            return export_native(network, path, fmi=fmi, documentation=documentation, **settings)  # type: ignore[arg-type]
         return export_python(system, path, **settings)  # type: ignore[arg-type]
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror}); choose another place") from error

@@ -11,9 +11,11 @@ from ..errors import InputError
 from ..network.modal import ModalNetwork
 from . import runtime_files
 from .binary import model_file, payload
-from .description import Experiment, model_description
+from .description import Experiment, Identity, model_description
+from .description3 import build_description, model_description3
+from .native_table import native_table
 from .package import write_fmu
-from .variables import variable_table
+from .supplements import supplements
 
 _PLACEHOLDER = "{00000000-0000-0000-0000-000000000000}"
 
@@ -29,59 +31,76 @@ def export_native(
     stop_time: float = 0.1,
     step_size: float = 1e-5,
     version: str,
+    fmi: str = "2.0",
+    documentation: bool | None = None,
     extra_files: Mapping[str, bytes] | None = None,
 ) -> Path:
-    """Write the FMI 2.0 co-simulation FMU of `network` to `path`, for all platforms; return the path.
+    """Write the FMU of `network` to `path`, model exchange and co-simulation, for all platforms; return the path.
 
-    `frequency` (Hz) is the start value of the input of that name; times in s; `extra_files` go into the FMU
-    under their names. The same arguments give the same bytes; the GUID is a hash of model and description.
+    `frequency` (Hz) is the start value of the input of that name; times in s; `fmi` is "2.0" or "3.0".
+    `documentation`: with plots and reference results (True), a page, terminals and icons only (False), or nothing of
+    the kind (None). `extra_files` go into the FMU under their names. The same arguments give the same bytes; the GUID
+    is a hash of model and description.
 
     Raises:
         InputError: the network, a name or a time cannot be used.
         GearpathError: the compiled runtime is missing.
     """
-    if not re.fullmatch(r"[A-Za-z_]\w*", model_identifier, re.ASCII):
-        raise InputError(
-            f"the model identifier {model_identifier!r} is not a C name; use letters, digits and underscores"
-        )
-    if not (np.isfinite([start_time, stop_time, step_size]).all() and start_time < stop_time and step_size > 0):
-        raise InputError(
-            f"start {start_time} s, stop {stop_time} s and step {step_size} s are no experiment; "
-            "start must lie before stop, and the step be positive"
-        )
+    check_arguments(model_identifier, start_time, stop_time, step_size)
     check_network(network)
-    variables = variable_table(network, frequency)
-    binaries, sources = runtime_files.binaries(), runtime_files.sources()
+    variables = native_table(network, frequency, fmi)
+    sources = runtime_files.sources(fmi)
     content = payload(network, variables, frequency)
-
-    def xml(guid: str) -> bytes:
-        return model_description(
-            variables,
-            name=network.name,
-            model_identifier=model_identifier,
-            description=description,
-            guid=guid,
-            version=version,
-            experiment=Experiment(float(start_time), float(stop_time), float(step_size)),
-            sources=[name for name in sorted(sources) if name.endswith(".c")],
-        )
-
-    guid = content_guid(content, xml(_PLACEHOLDER))
+    identity = Identity(
+        name=network.name,
+        model_identifier=model_identifier,
+        description=description,
+        guid=_PLACEHOLDER,
+        version=version,
+        experiment=Experiment(float(start_time), float(stop_time), float(step_size)),
+        sources=[name for name in sorted(sources) if name.endswith(".c")],
+    )
+    xml = model_description3(variables, identity) if fmi == "3.0" else model_description(variables, identity)
+    guid = content_guid(content, xml)
     files = {
-        "modelDescription.xml": xml(guid),
+        "modelDescription.xml": xml.replace(_PLACEHOLDER.encode(), guid.encode(), 1),
         "resources/model.bin": model_file(guid, content),
         "documentation/licenses/license.txt": runtime_files.licence(),
         **{f"sources/{name}": text for name, text in sources.items()},
         **{
-            f"binaries/{folder}/{model_identifier}{runtime_files.PLATFORMS[folder]}": library
-            for folder, library in binaries.items()
+            f"binaries/{folder}/{model_identifier}{extension}": library
+            for (folder, extension), library in runtime_files.binaries(fmi).items()
         },
     }
+    if documentation is not None:
+        files |= supplements(
+            network,
+            variables,
+            fmi,
+            description=description,
+            version=version,
+            experiment=identity.experiment,
+            documentation=documentation,
+            reference=documentation,
+        )
+    if fmi == "3.0":
+        files["sources/buildDescription.xml"] = build_description(identity)
     for name, extra in (extra_files or {}).items():
         if name in files or name.startswith("/") or "\\" in name or ".." in name.split("/"):
             raise InputError(f"{name!r} cannot be added to the FMU; it exists already or is no relative path")
         files[name] = extra
     return write_fmu(path, files)
+
+
+def check_arguments(identifier: str, start: float, stop: float, step: float) -> None:
+    """Refuse a model identifier or an experiment that no FMU can have."""
+    if not re.fullmatch(r"[A-Za-z_]\w*", identifier, re.ASCII):
+        raise InputError(f"the model identifier {identifier!r} is not a C name; use letters, digits and underscores")
+    if not (np.isfinite([start, stop, step]).all() and start < stop and step > 0):
+        raise InputError(
+            f"start {start} s, stop {stop} s and step {step} s are no experiment; "
+            "start must lie before stop, and the step be positive"
+        )
 
 
 def content_guid(*parts: bytes) -> str:

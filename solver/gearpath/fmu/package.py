@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ..errors import InputError
 
+_LEVEL = 3  # of compression: half the time of the usual 6, for 4 % more bytes
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # the first date that a zip file can hold
 
 
@@ -24,7 +25,7 @@ def write_fmu(path: Path, files: Mapping[str, bytes]) -> Path:
                 entry.compress_type = zipfile.ZIP_DEFLATED
                 entry.create_system = 3  # unix, on whatever machine this runs
                 entry.external_attr = (0o755 if file.startswith("binaries/") else 0o644) << 16
-                archive.writestr(entry, files[file], compresslevel=6)
+                archive.writestr(entry, files[file], compresslevel=_LEVEL)
         umask = os.umask(0)
         os.umask(umask)
         Path(name).chmod(0o666 & ~umask)

@@ -34,6 +34,8 @@ them.</li>
 <ul>
 <li>Time steps are exact for inputs that are held over a step, at any step size. Input derivatives are not
 supported by pythonfmu; choose the step by how well held inputs follow the signal.</li>
+<li>There is no gear mesh source in it, and no model exchange: the native kind of FMU has both. The transmission
+error is an input.</li>
 <li>Outputs always belong to the present inputs and parameters, also when an input was set without a
 step.</li>
 <li>Joint parameters and modal damping are tunable at any time. Design parameters are fixed: set them
@@ -58,7 +60,7 @@ a refused step as <code>fmi2Discard</code>. The instance can be used further in 
 def documentation(name: str, description: str, variables: Sequence[Variable], platforms: Sequence[str]) -> bytes:
     """documentation/index.html."""
     rows = (
-        f"<tr><td>{escape(variable.name)}</td><td>{escape(variable.unit)}</td>"
+        f"<tr><td>{escape(variable.name)}</td><td>{escape(variable.unit or '')}</td>"
         f"<td>{'' if variable.start is None else repr(variable.start)}</td>"
         f"<td>{escape(variable.description)}</td></tr>"
         for variable in variables

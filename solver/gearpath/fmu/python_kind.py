@@ -1,21 +1,19 @@
 """The python FMU: the full solver inside pythonfmu, so that design parameters can be set too."""
 
-import re
 import sys
 import tempfile
 import xml.etree.ElementTree as ET
 import zipfile
 from collections.abc import Mapping
+from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
-
-import numpy as np
 
 from ..errors import GearpathError, InputError, MissingExtraError
 from ..network.assemble import assemble
 from ..network.system import System
-from .description import Experiment, model_description
-from .native import check_network, content_guid
+from .description import Experiment, Identity, model_description
+from .native import check_arguments, check_network, content_guid
 from .package import write_fmu
 from .python_bundle import bundle, model_source
 from .python_documentation import documentation
@@ -37,6 +35,7 @@ _CAPABILITIES = {
     "canInterpolateInputs": "false",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
+    "providesDirectionalDerivative": "false",
 }
 _LOG_CATEGORIES = {
     "logStatusWarning": "Messages with the status warning",
@@ -64,31 +63,23 @@ def export_python(
 
     `frequency` (Hz) is the start value of the input of that name; times in s; `extra_files` go into the FMU
     under their names. The same arguments give the same bytes; the GUID is a hash of the content. What the FMU
-    needs of its host is written in its documentation.
+    needs of its host is written in its documentation. A gear mesh source is left out: it is of the native kind.
 
     Raises:
         InputError: the system, a name or a time cannot be used.
         GearpathError: pythonfmu is too old, or not installed (MissingExtraError).
     """
-    _check_arguments(model_identifier, start_time, stop_time, step_size)
+    check_arguments(model_identifier, start_time, stop_time, step_size)
     base = _base_fmu(model_identifier)
+    system = replace(system, source=None)
     network = assemble(system).modal().viscous()
     check_network(network)
     variables = python_table(system, network, frequency)
     experiment = Experiment(float(start_time), float(stop_time), float(step_size))
 
     def xml(guid: str) -> bytes:
-        content = model_description(
-            variables,
-            name=network.name,
-            model_identifier=model_identifier,
-            description=description,
-            guid=guid,
-            version=version,
-            experiment=experiment,
-            sources=[],
-        )
-        return _amended(content, variables)
+        identity = Identity(network.name, model_identifier, description, guid, version, experiment, [])
+        return _amended(model_description(variables, identity), variables)
 
     _, resources = bundle(
         model_source(system, entries(variables, network), frequency),
@@ -103,16 +94,6 @@ def export_python(
     files["documentation/licenses/pythonfmu.txt"] = _licence()
     _add(files, extra_files or {}, documentation(system.name, description, variables, _platforms(base)))
     return write_fmu(path, files)
-
-
-def _check_arguments(identifier: str, start: float, stop: float, step: float) -> None:
-    if not re.fullmatch(r"[A-Za-z_]\w*", identifier, re.ASCII):
-        raise InputError(f"the model identifier {identifier!r} is not a C name; use letters, digits and underscores")
-    if not (np.isfinite([start, stop, step]).all() and start < stop and step > 0):
-        raise InputError(
-            f"start {start} s, stop {stop} s and step {step} s are no experiment; "
-            "start must lie before stop, and the step be positive"
-        )
 
 
 def _base_fmu(identifier: str) -> dict[str, bytes]:

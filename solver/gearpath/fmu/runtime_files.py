@@ -13,18 +13,33 @@ PLATFORMS = {
     "darwin64": ".dylib",
     "aarch64-darwin": ".dylib",
 }
+# FMI 3 folders, and the FMI 2 folder that the library of each stands in.
+_PLATFORMS3 = {
+    "x86_64-linux": "linux64",
+    "aarch64-linux": "aarch64-linux",
+    "x86_64-windows": "win64",
+    "x86_64-darwin": "x86_64-darwin",
+    "aarch64-darwin": "aarch64-darwin",
+}
 
 
-def binaries(runtime: Path | None = None) -> dict[str, bytes]:
-    """The library of every platform, by FMI 2 folder."""
+def binaries(fmi: str = "2.0", runtime: Path | None = None) -> dict[tuple[str, str], bytes]:
+    """The library of every platform, by folder and extension."""
     folder = (runtime or RUNTIME) / "binaries"
-    return {name: _read(folder / name / f"gearpath{extension}") for name, extension in PLATFORMS.items()}
+    stored = _PLATFORMS3 if fmi == "3.0" else {name: name for name in PLATFORMS}
+    found = {}
+    for name, store in stored.items():
+        extension = PLATFORMS.get(store, ".dylib")
+        found[name, extension] = _read(folder / store / f"gearpath{extension}")
+    return found
 
 
-def sources(runtime: Path | None = None) -> dict[str, bytes]:
-    """The C sources and the FMI headers, by file name."""
+def sources(fmi: str = "2.0", runtime: Path | None = None) -> dict[str, bytes]:
+    """The C sources by file name: the core and one adapter. Importers bring the headers of FMI themselves."""
     folder = (runtime or RUNTIME) / "sources"
-    files = {file.name: file.read_bytes() for file in sorted(folder.glob("*.[ch]"))}
+    other = "fmi2_" if fmi == "3.0" else "fmi3_"
+    names = [file for file in sorted(folder.glob("*_*.[ch]")) if not file.name.startswith(other)]
+    files = {file.name: file.read_bytes() for file in names}
     if not files:
         raise _missing(folder)
     return files

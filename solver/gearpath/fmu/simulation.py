@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import ctypes as ct
+import re
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -13,40 +13,61 @@ import numpy as np
 
 from ..errors import GearpathError, MissingExtraError
 from ..numerics.arrays import Real
+from .simulation_calls import Calls, Fmi2Calls, Fmi3Calls, row, uints
+
+_ENTRY = re.compile(r"(.+)\[(\d+),(\d+)\]$")
 
 
 class RunningFmu:
-    """An instance of an FMI 2.0 co-simulation FMU, made by `running`."""
+    """An instance of a co-simulation FMU of either version of FMI, made by `running`."""
 
-    def __init__(self, slave: Any, description: Any) -> None:
-        self.slave, self.description = slave, description
-        self.interpolates = bool(description.coSimulation.canInterpolateInputs)
-        self._reference = {v.name: v.valueReference for v in description.modelVariables}
+    def __init__(self, calls: Calls, description: Any) -> None:
+        self.calls, self.description = calls, description
+        self.interpolates = calls.interpolates
+        self._variable = {v.name: v for v in description.modelVariables}
         self.time = 0.0
 
     def references(self, names: Sequence[str]) -> list[int]:
         """Value references of variables; raises GearpathError for one that the FMU does not have."""
-        missing = [name for name in names if name not in self._reference]
+        missing = [name for name in names if name not in self._variable]
         if missing:
             raise GearpathError(f"the FMU has no variable {missing[0]!r}; export it again from this model")
-        return [self._reference[name] for name in names]
+        return [self._variable[name].valueReference for name in names]
 
     def start(self, values: Mapping[str, float] | None = None) -> None:
         """Set parameters and start values, and go through initialisation."""
-        self.slave.setupExperiment(startTime=0.0)
+        self.calls.set_up()
+        self.calls.enter()
         self.set(values or {})
-        self.slave.enterInitializationMode()
-        self.slave.exitInitializationMode()
+        self.calls.leave()
         self.time = 0.0
 
     def set(self, values: Mapping[str, float]) -> None:
-        """Set real variables by name."""
-        if values:
-            self.slave.setReal(self.references(list(values)), list(values.values()))
+        """Set real variables by name; entries of a symmetric matrix (`name[i,k]`) also where it is an array."""
+        whole = {name: value for name, value in values.items() if name in self._variable}
+        if whole:
+            self.calls.set(self.references(list(whole)), list(whole.values()))
+        for name, matrix in self._matrices({k: v for k, v in values.items() if k not in whole}).items():
+            self.calls.set(self.references([name]), list(matrix.ravel()))
 
     def get(self, names: Sequence[str]) -> Real:
-        """Real variables by name."""
-        return np.array(self.slave.getReal(self.references(names)), float)
+        """Scalar real variables by name."""
+        return np.array(self.calls.get(self.references(names), len(names)), float)
+
+    def _matrices(self, entries: Mapping[str, float]) -> dict[str, Real]:
+        matrices: dict[str, Real] = {}
+        for entry, value in entries.items():
+            found = _ENTRY.fullmatch(entry)
+            if found is None:
+                self.references([entry])  # says that there is none
+                continue
+            name, i, k = found[1], int(found[2]) - 1, int(found[3]) - 1
+            if name not in matrices:
+                reference = self.references([name])
+                shape = [int(d.start) for d in self._variable[name].dimensions]
+                matrices[name] = np.array(self.calls.get(reference, int(np.prod(shape)))).reshape(shape)
+            matrices[name][i, k] = matrices[name][k, i] = value
+        return matrices
 
     def run(
         self,
@@ -67,20 +88,18 @@ class RunningFmu:
         u = np.ascontiguousarray(np.column_stack([inputs[name] for name in names]), float)
         slopes = np.ascontiguousarray(np.diff(u, axis=0) / step)
         steps = len(u) - 1
-        set_refs, get_refs = _uints(self.references(names)), _uints(self.references(outputs))
-        orders = (ct.c_int * len(names))(*[1] * len(names))
+        set_refs, get_refs = uints(self.references(names)), uints(self.references(outputs))
         out = np.empty((steps + 1 - record_from, len(outputs)))
-        slave, c = self.slave, self.slave.component
-        start = self.time
+        calls, start = self.calls, self.time
         for k in range(steps + 1):
-            slave.fmi2SetReal(c, set_refs, len(names), _row(u, k))
+            calls.set_row(set_refs, len(names), row(u, k))
             if k >= record_from:
-                slave.fmi2GetReal(c, get_refs, len(outputs), _row(out, k - record_from))
+                calls.get_row(get_refs, len(outputs), row(out, k - record_from))
             if k == steps:
                 break
             if interpolate:
-                slave.fmi2SetRealInputDerivatives(c, set_refs, len(names), orders, _row(slopes, k))
-            slave.fmi2DoStep(c, start + k * step, step, 1)
+                calls.aim_at(set_refs, len(names), row(slopes, k), row(u, k + 1))
+            calls.step(start + k * step, step)
             if k % 5000 == 4999:
                 progress(5000)
         self.time = start + steps * step
@@ -92,32 +111,14 @@ def running(path: Path) -> Iterator[RunningFmu]:
     """Unpack an FMU, instantiate it, and clean up at the end."""
     try:
         import fmpy
-        from fmpy.fmi2 import FMU2Slave
     except ImportError as error:
         raise MissingExtraError("fmpy", "fmu") from error
     description = fmpy.read_model_description(str(path))
     with tempfile.TemporaryDirectory(prefix="gearpath-") as folder:
         fmpy.extract(str(path), folder)
-        slave = FMU2Slave(
-            guid=description.guid,
-            unzipDirectory=folder,
-            modelIdentifier=description.coSimulation.modelIdentifier,
-            instanceName=description.modelName,
-        )
-        slave.instantiate()
+        kind = Fmi3Calls if description.fmiVersion.startswith("3") else Fmi2Calls
+        calls = kind(description, folder)
         try:
-            yield RunningFmu(slave, description)
+            yield RunningFmu(calls, description)
         finally:
-            slave.freeInstance()
-
-
-def _uints(values: Sequence[int]) -> ct.Array[ct.c_uint]:
-    return (ct.c_uint * len(values))(*values)
-
-
-_DOUBLES = ct.POINTER(ct.c_double)
-
-
-def _row(array: Real, k: int) -> Any:
-    """Pointer to row k of a contiguous array."""
-    return ct.cast(array.ctypes.data + k * array.strides[0], _DOUBLES)
+            calls.free()

@@ -11,8 +11,9 @@ import numpy as np
 from ..components.dofs import is_rotation
 from ..errors import InputError
 from ..network.modal import ModalNetwork
-from ..network.records import JointRows, Load, Output
+from ..network.records import JointRows, Load
 from ..numerics.arrays import Real
+from .dependencies import Dependencies
 
 
 class Kind(IntEnum):
@@ -20,33 +21,59 @@ class Kind(IntEnum):
 
     INPUT = 0
     FREQUENCY = 1
-    STIFFNESS = 2
-    DAMPING = 3
-    MODAL_DAMPING = 4
-    OUTPUT = 5
-    ALPHA = 6
-    JOINT_ALPHA = 7
-    FRF_REAL = 8
-    FRF_IMAG = 9
-    DESIGN = 10  # of the python kind only: what needs the components rebuilt
+    SPEED = 2
+    STIFFNESS = 3
+    DAMPING = 4
+    MODAL_DAMPING = 5
+    TEETH = 6
+    TONE_AMPLITUDE = 7
+    TONE_PHASE = 8
+    OUTPUT = 9
+    ALPHA = 10
+    JOINT_ALPHA = 11
+    FRF_REAL = 12
+    FRF_IMAG = 13
+    ORDER_FREQUENCY = 14
+    ORDER_ALPHA = 15
+    ORDER_POWER = 16
+    STATE = 19
+    DERIVATIVE = 20
+    TIME = 25
+    # arrays
+    STIFFNESS_MATRIX = 64
+    DAMPING_MATRIX = 65
+    PORT_FORCES = 66
+    PORT_VELOCITIES = 67
+    STATES = 68
+    DERIVATIVES = 69
+    MATRIX_A = 70
+    MATRIX_B = 71
+    MATRIX_C = 72
+    MATRIX_D = 73
+    DESIGN = 127  # of the python kind only: what needs the components rebuilt
+
+
+Causality = Literal["input", "parameter", "output", "local", "calculatedParameter", "independent"]
 
 
 @dataclass(frozen=True)
 class Variable:
-    """A Real variable of the FMU; its value reference is its place in the table."""
+    """A Real (FMI 3: Float64) variable of the FMU; its value reference is its place in the table."""
 
     name: str
     kind: Kind
     index: tuple[int, int, int]  # into the network's loads, joints, outputs ...; what it means depends on the kind
-    causality: Literal["input", "parameter", "output"]
-    unit: str
+    causality: Causality
+    unit: str | None  # None where SI has none, such as for mass-normalised states
     description: str
     nominal: float
-    start: float | None = None  # None for outputs, which are calculated
+    start: float | tuple[float, ...] | None = None  # None for what is calculated; arrays row by row
     minimum: float | None = None
     maximum: float | None = None
-    dependencies: tuple[str, ...] = ()  # of an output, on inputs, at a communication point
-    initial_dependencies: tuple[str, ...] = ()  # of an output, on inputs and parameters, at the start
+    dependencies: tuple[str, ...] = ()  # of an unknown, on inputs and states, at a communication point
+    initial_dependencies: tuple[str, ...] = ()  # of an unknown, on inputs, states and parameters, at the start
+    shape: tuple[int, ...] = ()  # of an array
+    derivative_of: str | None = None  # the state whose derivative it is
 
 
 # One bname of FMI's structured naming convention, or several with dots.
@@ -70,24 +97,40 @@ def variable_table(network: ModalNetwork, frequency: float) -> tuple[Variable, .
     Raises:
         InputError: a name cannot be an FMU variable, or occurs twice; excitation or path do not exist.
     """
+    check_names(network, frequency)
+    parameters = [*joint_parameters(network), *modal_parameters(network)]
+    table = (
+        *inputs(network, frequency),
+        *parameters,
+        *time_outputs(network, Dependencies(network, at_rest=True)),
+        *frequency_outputs(network, excitation_of(network), tuple(p.name for p in parameters)),
+    )
+    return checked(table)
+
+
+def check_names(network: ModalNetwork, frequency: float) -> None:
+    """Refuse a frequency, an excitation or a path that does not exist."""
     if not (np.isfinite(frequency) and frequency > 0):
         raise InputError(f"the start value of the frequency input is {frequency} Hz; give a positive number")
-    excitation = next((load for load in network.loads if load.name == network.excitation), None)
-    if excitation is None:
-        raise InputError(f"the excitation {network.excitation!r} is none of the network's loads; name one of them")
+    excitation_of(network)
     for path in network.paths:
         if path not in {joint.name for joint in network.joints}:
             raise InputError(f"the path {path!r} is none of the network's joints; name one of them")
-    parameters = [*_joint_parameters(network), *_modal_parameters(network)]
-    table = (
-        *_inputs(network, frequency),
-        *parameters,
-        *_time_outputs(network),
-        *_frequency_outputs(network, excitation, tuple(p.name for p in parameters)),
-    )
+
+
+def excitation_of(network: ModalNetwork) -> Load:
+    """The load that power ratios and transfers refer to."""
+    excitation = next((load for load in network.loads if load.name == network.excitation), None)
+    if excitation is None:
+        raise InputError(f"the excitation {network.excitation!r} is none of the network's loads; name one of them")
+    return excitation
+
+
+def checked(table: tuple[Variable, ...]) -> tuple[Variable, ...]:
+    """The table, after a look at its names."""
     seen: set[str] = set()
     for variable in table:
-        name = re.sub(r"\[\d+,\d+\]$", "", variable.name)
+        name = re.sub(r"^der\((.*)\)$", r"\1", re.sub(r"\[\d+,\d+\]$", "", variable.name))
         if not _NAME.fullmatch(name):
             raise InputError(
                 f"{name!r} cannot name an FMU variable; use letters, digits and underscores, parted by dots"
@@ -108,11 +151,12 @@ def transfer_unit(output: str, excitation: str) -> str:
     return "/".join(f"({unit})" if set("/.") & set(unit) else unit for unit in (output, excitation))
 
 
-def _inputs(network: ModalNetwork, frequency: float) -> Iterable[Variable]:
+def inputs(network: ModalNetwork, frequency: float) -> Iterable[Variable]:
+    """All loads, and the frequency of the frequency-domain outputs."""
     for k, load in enumerate(network.loads):
         error = load.is_transmission_error
         what = "Transmission error in the gear mesh" if error else "Force or moment from outside"
-        yield Variable(load.name, Kind.INPUT, (k, 0, 0), "input", load.unit, what, _load_nominal(load), start=0.0)
+        yield Variable(load.name, Kind.INPUT, (k, 0, 0), "input", load.unit, what, load_nominal(load), start=0.0)
     yield Variable(
         "frequency",
         Kind.FREQUENCY,
@@ -126,20 +170,22 @@ def _inputs(network: ModalNetwork, frequency: float) -> Iterable[Variable]:
     )
 
 
-def _load_nominal(load: Load) -> float:
+def load_nominal(load: Load) -> float:
+    """A typical amplitude, m or N."""
     return 1e-6 if load.is_transmission_error else 1.0
 
 
-def _joint_parameters(network: ModalNetwork) -> Iterable[Variable]:
+def joint_parameters(network: ModalNetwork) -> Iterable[Variable]:
+    """Every entry of the upper halves of K and C of all joints."""
     for j, joint in enumerate(network.joints):
         for kind, matrix, factor in (
             (Kind.STIFFNESS, joint.stiffness, ""),
             (Kind.DAMPING, joint.damping, ".s"),
         ):
-            yield from _matrix_parameters(j, joint, kind, matrix, factor)
+            yield from matrix_parameters(j, joint, kind, matrix, factor)
 
 
-def _matrix_parameters(j: int, joint: JointRows, kind: Kind, matrix: Real, factor: str) -> Iterable[Variable]:
+def matrix_parameters(j: int, joint: JointRows, kind: Kind, matrix: Real, factor: str) -> Iterable[Variable]:
     what = kind.name.lower()
     scale = np.sqrt(np.maximum(np.diag(matrix), 0.0))
     for i, row in enumerate(joint.dofs):
@@ -163,7 +209,8 @@ def _matrix_parameters(j: int, joint: JointRows, kind: Kind, matrix: Real, facto
             )
 
 
-def _modal_parameters(network: ModalNetwork) -> Iterable[Variable]:
+def modal_parameters(network: ModalNetwork) -> Iterable[Variable]:
+    """The damping ratio of every component that has elastic modes."""
     for g, (name, ratio) in enumerate(network.modal_damping.items()):
         yield Variable(
             f"{name}.modal_damping",
@@ -179,10 +226,10 @@ def _modal_parameters(network: ModalNetwork) -> Iterable[Variable]:
         )
 
 
-def _time_outputs(network: ModalNetwork) -> Iterable[Variable]:
-    structure = _Feedthrough(network)
+def time_outputs(network: ModalNetwork, structure: Dependencies) -> Iterable[Variable]:
+    """All outputs over time: forces on the receivers, motions, powers."""
     for o, output in enumerate(network.outputs):
-        inputs, parameters = structure.of(output)
+        unknown = structure.of_output(output)
         yield Variable(
             output.name,
             Kind.OUTPUT,
@@ -191,12 +238,13 @@ def _time_outputs(network: ModalNetwork) -> Iterable[Variable]:
             output.unit,
             f"{_QUANTITY[output.quantity].capitalize()}, over time",
             _NOMINAL[output.quantity],
-            dependencies=inputs,
-            initial_dependencies=(*inputs, *parameters),
+            dependencies=unknown.knowns,
+            initial_dependencies=unknown.initial,
         )
 
 
-def _frequency_outputs(network: ModalNetwork, excitation: Load, parameters: tuple[str, ...]) -> Iterable[Variable]:
+def frequency_outputs(network: ModalNetwork, excitation: Load, parameters: tuple[str, ...]) -> Iterable[Variable]:
+    """Power ratios and transfers at the input frequency; `parameters` are all that change them."""
     initial = ("frequency", *parameters)
 
     def ratio(name: str, kind: Kind, index: int, what: str) -> Variable:
@@ -236,75 +284,7 @@ def _frequency_outputs(network: ModalNetwork, excitation: Load, parameters: tupl
                 "output",
                 transfer_unit(output.unit, excitation.unit),
                 f"{side} part of the transfer from {excitation.name} to {output.name}, at the frequency",
-                _NOMINAL[output.quantity] / _load_nominal(excitation),
+                _NOMINAL[output.quantity] / load_nominal(excitation),
                 dependencies=("frequency",),
                 initial_dependencies=initial,
             )
-
-
-class _Feedthrough:
-    """Which inputs and parameters reach an output at once, without the state.
-
-    q' = s + sum X d e,  s' = ... + sum push u - P^T g,  g = K P q + C P q'; q and s are zero at the start.
-    Products are tested entry by entry for zeros, so that no parameter value can add a dependency.
-    """
-
-    def __init__(self, network: ModalNetwork) -> None:
-        self.network = network
-        self.groups: dict[str, Real] = {}  # parameter -> 1 for each elastic mode that it damps
-        for name in network.modal_damping:
-            mask = np.zeros(len(network.eigenvalues))
-            mask[network.components[name]] = 1.0
-            self.groups[f"{name}.modal_damping"] = mask * (network.eigenvalues > 0)
-        self.damped = sum(self.groups.values(), np.zeros(len(network.eigenvalues)))
-
-    def of(self, output: Output) -> tuple[tuple[str, ...], tuple[str, ...]]:
-        """Names of the inputs and of the parameters."""
-        if output.quantity in ("force", "power"):
-            found = self._of_joint(next(j for j in self.network.joints if j.name == output.joint), output)
-        elif output.quantity == "displacement" or output.row is None:
-            found = set()
-        elif output.quantity == "velocity":
-            found = self._of_rates(output.row[None])
-        else:
-            found = self._of_acceleration(output.row)
-        inputs = tuple(load.name for load in self.network.loads if load.name in found)
-        return inputs, tuple(sorted(found - set(inputs)))
-
-    def _of_rates(self, rows: Real) -> set[str]:
-        """What rows . X d e depends on."""
-        found = set()
-        for load in self.network.loads:
-            if load.mesh_displacement is None:
-                continue
-            terms = np.abs(rows) * np.abs(load.mesh_displacement)
-            for parameter, mask in self.groups.items():
-                if (terms * mask).any():
-                    found |= {load.name, parameter}
-        return found
-
-    def _of_joint(self, joint: JointRows, output: Output | None) -> set[str]:
-        """What g = C P q' depends on: all the joint's rows, as C couples them, but its own entries only."""
-        found = self._of_rates(joint.relative)
-        if found:
-            found |= {
-                v.name
-                for v in _matrix_parameters(0, joint, Kind.DAMPING, joint.damping, "")
-                if output is None or output.quantity == "power" or output.dof in v.index[1:]
-            }
-        return found
-
-    def _of_acceleration(self, row: Real) -> set[str]:
-        found = set()
-        for load in self.network.loads:
-            terms = np.abs(row) * np.abs(load.column)
-            if load.mesh_displacement is None:
-                found |= {load.name} if terms.any() else set()
-                continue
-            if (terms * (self.network.eigenvalues > 0)).any():
-                found.add(load.name)
-            found |= {parameter for parameter, mask in self.groups.items() if (terms * mask).any()}
-        for joint in self.network.joints:
-            if (np.abs(joint.relative) * np.abs(row)).any():
-                found |= self._of_joint(joint, None)
-        return found

@@ -3,10 +3,12 @@
 from ..components import Disk, GearTrain, Mesh, RigidBody, Section, Shaft
 from ..joints import Joint, Port, beam_joint
 from ..joints.joint import Matrix
+from ..network.records import MeshSource, Tone
 from ..network.system import Actuator, Component, MeshExcitation, PointExcitation, Sensor, System, Vector
 from .build_structures import build_frame, build_material, build_plate, shear_coefficient_of
 from .joint_tables import BeamJointTable, JointTable
-from .references import beam_offset, find_gear, find_mesh, find_port
+from .references import beam_offset, find_gear, find_mesh, find_port, mesh_names
+from .source_tables import SourceTable
 from .structure_tables import FrameTable, PlateTable
 from .tables import ActuatorTable, ComponentTable, ExcitationTable, FileTable, RigidBodyTable
 from .train_tables import GearTrainTable, MeshTable, SectionTable, ShaftTable
@@ -32,6 +34,7 @@ def build_system(file: FileTable) -> System:
             for name, table in file.components.items()
             if isinstance(table, (PlateTable, FrameTable)) and table.vectors is not None
         },
+        source=None if file.source is None else _source(file, file.source),
     )
 
 
@@ -124,6 +127,19 @@ def _excitation(file: FileTable, table: ExcitationTable) -> MeshExcitation | Poi
         component, mesh = find_mesh(file, table.mesh, "mesh")
         return MeshExcitation(component, mesh, table.displacement)
     return PointExcitation(find_port(file, table.point, "point"), table.dof, table.force, table.at)
+
+
+def _source(file: FileTable, table: SourceTable) -> MeshSource:
+    _, mesh = find_mesh(file, table.mesh or mesh_names(file)[0], "source.mesh")
+    harmonics = [
+        Tone(f"{mesh}.harmonic_{tone.order}", float(tone.order), 0.0, tone.amplitude, tone.phase)
+        for tone in table.harmonics
+    ]
+    sidebands = [
+        Tone(f"{mesh}.sideband_{i}", float(tone.harmonic), tone.order, tone.amplitude, tone.phase)
+        for i, tone in enumerate(table.sidebands, start=1)
+    ]
+    return MeshSource(f"{mesh}.transmission_error", table.speed, table.teeth, (*harmonics, *sidebands))
 
 
 def _port(file: FileTable, table: ActuatorTable) -> Port:

@@ -49,7 +49,8 @@ def _parts(path: object, full: Mapping[str, Any]) -> list[str | int]:
         if step not in known:
             where = f"in {dotted(steps[:k])}" if k else "in the model"
             problem = f"there is no {show(step)} {where}"
-            raise ModelError(dotted(steps), problem, hint(step, known) if known else "end the path before it")
+            end = f"set all of {dotted(steps[:k])}, which is left out" if place is None else "end the path before it"
+            raise ModelError(dotted(steps), problem, hint(step, known) if known else end)
         parts.append(known[step])
         place = place[known[step]]
     return parts

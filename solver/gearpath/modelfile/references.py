@@ -108,15 +108,19 @@ def find_gear(train: GearTrainTable, text: str, key: str) -> tuple[str, str]:
     return shaft, disk
 
 
-def find_mesh(file: FileTable, text: str, key: str) -> tuple[str, str]:
-    """(component, mesh) of the reference "component.mesh"."""
-    meshes = [
+def mesh_names(file: FileTable) -> list[str]:
+    """References "component.mesh" of all meshes."""
+    return [
         f"{name}.{mesh}"
         for name, component in file.components.items()
         if isinstance(component, GearTrainTable)
         for mesh in component.meshes
     ]
-    find("mesh", text, meshes, key)
+
+
+def find_mesh(file: FileTable, text: str, key: str) -> tuple[str, str]:
+    """(component, mesh) of the reference "component.mesh"."""
+    find("mesh", text, mesh_names(file), key)
     component, mesh = text.split(".")
     return component, mesh
 

@@ -13,6 +13,7 @@ _ONE_OF = {
     "ExcitationTable": (("mesh",), ("point", "dof")),
 }
 _NAMED = ("properties", "patternProperties", "$defs", "default")
+_ANY_OF = {"SourceTable": (("harmonics",), ("sidebands",))}  # at least one
 _NOT_BOTH = {"MatrixJointTable": ("damping", "damping_time")}
 
 
@@ -24,9 +25,13 @@ def json_schema() -> dict[str, Any]:
         for field in table["properties"].values():
             if "default" in field and field["default"] in (None, "", []):
                 del field["default"]
+            if {"type": "null"} in field.get("anyOf", ()):  # a table that may be left out; a file has no null
+                field |= field.pop("anyOf")[0]
             _close(field)
     for name, choices in _ONE_OF.items():
         definitions[name]["oneOf"] = [{"required": list(keys)} for keys in choices]
+    for name, choices in _ANY_OF.items():
+        definitions[name]["anyOf"] = [{"required": list(keys)} for keys in choices]
     for name, keys in _NOT_BOTH.items():
         definitions[name]["not"] = {"required": list(keys)}
     for key in ("components", "joints"):

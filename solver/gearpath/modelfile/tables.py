@@ -17,6 +17,7 @@ from .hints import hint
 from .joint_tables import JOINTS, JointTable
 from .leaf import is_table, wrong
 from .numbers import Count, Quantity, Row
+from .source_tables import SourceTable
 from .structure_tables import FrameTable, PlateTable
 from .table import Table
 from .train_tables import GearTrainTable, MaterialTable, Named
@@ -139,3 +140,4 @@ class FileTable(Table):
     sensors: Annotated[
         Named[SensorTable], Field(description="Additional outputs by name", default_factory=dict)
     ]
+    source: Annotated[SourceTable | None, Field(description="A gear mesh source inside native FMUs")] = None

@@ -110,4 +110,5 @@ def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
         loss_factors={name: s.loss_factor for name, s in network.structures.items() if s.loss_factor},
         band=network.band,
         loss_frequency=network.system.loss_frequency,
+        source=network.system.source,
     )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..numerics.arrays import Real
-from .records import JointRows, Load, Output
+from .records import JointRows, Load, MeshSource, Output
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,7 @@ class ModalNetwork:
     loss_factors: Mapping[str, float] = field(default_factory=dict)  # component -> eta, where it is not 0
     band: float = np.inf  # Hz, up to where components that were reduced to their band are exact
     loss_frequency: float = 1000.0  # Hz, where loss factors of joints and their viscous equivalents agree
+    source: MeshSource | None = None  # of FMUs only: everything else takes the excitation as an input
 
     @property
     def damping(self) -> Real:

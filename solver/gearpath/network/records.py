@@ -63,3 +63,24 @@ class Output:
     row: Real | None = None  # (n,) for displacement, velocity and acceleration
     joint: str | None = None  # for force and power
     dof: int = 0  # index into the joint's degrees of freedom, for force
+
+
+@dataclass(frozen=True)
+class Tone:
+    """One tone of a gear mesh source: a cos((harmonic * teeth + shift) theta + phase), theta the shaft angle."""
+
+    name: str  # the FMU variables begin with it, such as "mesh.harmonic_1"
+    harmonic: float  # of the tooth meshing
+    shift: float = 0.0  # orders of the shaft to the side: a sideband of a modulated harmonic
+    amplitude: float = 0.0  # m
+    phase: float = 0.0  # rad
+
+
+@dataclass(frozen=True)
+class MeshSource:
+    """A transmission error that turns with the driving shaft, made inside an FMU and added to the input."""
+
+    load: str  # the transmission error that it adds to
+    speed: float  # rev/min, start value of the input
+    teeth: int  # of the gear on the driving shaft
+    tones: tuple[Tone, ...]

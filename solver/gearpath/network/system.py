@@ -10,6 +10,8 @@ from typing import Literal
 
 from ..components import Frame, GearTrain, Plate, RigidBody
 from ..joints import Joint, Port
+from .records import MeshSource as MeshSource
+from .records import Tone as Tone  # named here because the repr of a system names it
 
 Vector = tuple[float, float, float]
 Component = GearTrain | RigidBody | Plate | Frame
@@ -67,3 +69,4 @@ class System:
     loss_frequency: float = 1000.0  # Hz, where the viscous equivalents of joints' loss factors dissipate alike
     band: float = 5000.0  # Hz, up to where reduced components must be exact
     vectors: Mapping[str, int] = field(default_factory=dict)  # interior vectors of reduced components, where chosen
+    source: MeshSource | None = None  # of native FMUs only

@@ -25,10 +25,16 @@ def discretise(A: Real, B: Real, step: float) -> Propagator:
     """Propagator over `step` seconds, from the exponential of the augmented matrix (Van Loan 1978).
 
     exp([[A h, B h, 0], [0, 0, I], [0, 0, 0]]) = [[Phi, held, ramp], [0, I, I], [0, 0, I]]
+
+    The inputs are taken in units that make B no larger than A: a transmission error in metres would otherwise have the
+    exponential squared so often that it loses five digits.
     """
     n, m = B.shape
+    sizes, largest = abs(B).sum(axis=0), abs(A).sum(axis=0).max(initial=0.0)
+    ratio = np.divide(sizes, largest, out=np.ones(m), where=(sizes > 0) & (largest > 0))
+    unit = np.exp2(-np.rint(np.log2(ratio)))  # powers of two round nothing
     augmented = np.zeros((n + 2 * m, n + 2 * m))
-    augmented[:n, :n], augmented[:n, n : n + m] = A * step, B * step
+    augmented[:n, :n], augmented[:n, n : n + m] = A * step, B * unit * step
     augmented[n : n + m, n + m :] = np.eye(m)
     E = scipy.linalg.expm(augmented)
-    return Propagator(E[:n, :n], E[:n, n : n + m], E[:n, n + m :])
+    return Propagator(E[:n, :n], E[:n, n : n + m] / unit, E[:n, n + m :] / unit)

@@ -32,9 +32,25 @@ def parameters(network: ModalNetwork) -> dict[str, float]:
 def start_check(description: Any, network: ModalNetwork) -> Check:
     """Start values in the modelDescription against the model: an importer may set them all."""
     wanted = parameters(network)
-    starts = {v.name: v.start for v in description.modelVariables if v.name in wanted}
-    found = np.array([float(starts[name]) if starts.get(name) is not None else np.nan for name in wanted])
+    starts = _starts(description)
+    found = np.array([starts.get(name, np.nan) for name in wanted])
     expected = np.array(list(wanted.values()))
     deviation = relative(abs(found - expected), np.maximum(abs(expected), 1e-300))
     what = f"{len(wanted)} parameters, relative to the model's"
     return Check("start values of the parameters", deviation, 1e-12, what)
+
+
+def _starts(description: Any) -> dict[str, float]:
+    """Start values by name, those of a matrix by entry."""
+    starts = {}
+    for variable in description.modelVariables:
+        if variable.start is None:
+            continue
+        shape = [int(d.start) for d in getattr(variable, "dimensions", None) or ()]
+        values = variable.start.split() if isinstance(variable.start, str) else np.atleast_1d(variable.start)
+        if len(shape) == 2:
+            for at, value in enumerate(values):
+                starts[f"{variable.name}[{at // shape[1] + 1},{at % shape[1] + 1}]"] = float(value)
+        elif not shape:
+            starts[variable.name] = float(variable.start)
+    return starts

@@ -45,7 +45,7 @@ def deviation(fmu: RunningFmu, network: ModalNetwork, f: Real) -> float:
     ratios, transfers = _read(fmu, network, f)
     omega = 2 * np.pi * f
     flow = power_flow(network, omega)
-    expected, size = _expected_ratios(network, flow, omega)
+    expected, size = expected_ratios(network, flow, omega)
     linear = [o for o in network.outputs if o.quantity != "power"]
     load = next(item for item in network.loads if item.name == network.excitation)
     exact = frequency_response(network, omega, linear, [load])[:, :, 0]
@@ -70,7 +70,7 @@ def _read(fmu: RunningFmu, network: ModalNetwork, f: Real) -> tuple[Real, Comple
     return table[:, : len(ratios)], transfers
 
 
-def _expected_ratios(network: ModalNetwork, flow: PowerFlow, omega: Real) -> tuple[Real, Real]:
+def expected_ratios(network: ModalNetwork, flow: PowerFlow, omega: Real) -> tuple[Real, Real]:
     """Power ratios as the FMU's outputs hold them, (F, 3 + paths), and the size that they are judged by, (F,).
 
     That is what flows in all paths together; and active power that is a small rest of a large apparent power keeps

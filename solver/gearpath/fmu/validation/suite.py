@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,9 +19,10 @@ from ...network.system import System
 from ...network.time_twin import time_twin
 from ...numerics.arrays import Real
 from ..checks import Check, Comparison, ValidationReport
+from ..conformance import Finding, Severity, check_conformance
 from ..export import export
 from ..simulation import running
-from . import chirp, measure, spectrum, tones
+from . import chirp, measure, source, spectrum, tones
 from .exchange import exchanged, start_check
 
 Message = Callable[[str], None]
@@ -58,11 +59,14 @@ def validate(
     limits = Limits()
     message("standard: fmpy's validator")
     checks = [standard_check(path)]
+    message("standard: the rules that validators miss")
+    findings = check_conformance(path)
+    checks.append(conformance_check(findings))
     advance(0.05)
     changed = exchanged(network)
     with running(path) as fmu:
         checks.append(start_check(fmu.description, network))
-        fmu.start()
+        fmu.start(source.silenced(network, kind))
         message("frequency-domain outputs against the power flow")
         checks += spectrum.checks(fmu, network, changed, band, limits.spectrum)
         advance(0.05)
@@ -72,6 +76,10 @@ def validate(
             fmu, network, changed, signals, limits.chirp, lambda n: advance(0.1 * n / chirp.STEPS)
         )
         checks += compared
+    if network.source is not None and kind == "native":
+        message("gear mesh source against python-control")
+        with running(path) as fmu:
+            checks += source.checks(fmu, network, network.source, limits.chirp, limits.spectrum)
     other = "python" if kind == "native" else "native"
     message(f"{kind} against {other} kind")
     checks.append(_kinds_check(system, network, band, signals, found, other, limits.kinds))
@@ -79,10 +87,10 @@ def validate(
     if is_free(network):  # it drifts for ever
         message("no sine steady state: the machine is not held to the ground")
         advance(0.65)
-        return ValidationReport(path, network.name, kind, tuple(checks), ())
+        return ValidationReport(path, network.name, kind, tuple(checks), findings=findings)
     message("sine steady state against the mobility synthesis")
     steady, comparisons = _steady_checks(path, network, band, limits, lambda part: advance(0.65 * part))
-    return ValidationReport(path, network.name, kind, (*checks, *steady), tuple(comparisons))
+    return ValidationReport(path, network.name, kind, (*checks, *steady), tuple(comparisons), findings=findings)
 
 
 def is_free(network: ModalNetwork) -> bool:
@@ -113,7 +121,15 @@ def standard_check(path: Path) -> Check:
         raise MissingExtraError("fmpy", "fmu") from error
     problems = validate_fmu(str(path))
     what = "problems found by fmpy's validator" + (": " + "; ".join(map(str, problems)) if problems else "")
-    return Check("conformance to FMI 2.0", float(len(problems)), 0.0, what)
+    return Check("conformance to FMI, fmpy's validator", float(len(problems)), 0.0, what)
+
+
+def conformance_check(findings: Sequence[Finding]) -> Check:
+    """Number of errors among the findings of the conformance check."""
+    errors = sum(finding.severity == Severity.ERROR for finding in findings)
+    warnings = sum(finding.severity == Severity.WARNING for finding in findings)
+    what = f"errors by Gearpath's own rules, and {warnings} warnings"
+    return Check("conformance to FMI, own rules", float(errors), 0.0, what)
 
 
 def _kinds_check(
@@ -128,9 +144,9 @@ def _kinds_check(
     """The other kind of FMU, exported from the same model, simulated and compared."""
     steps = 1000
     with tempfile.TemporaryDirectory(prefix="gearpath-") as folder:
-        twin = export(system, Path(folder) / "twin.fmu", kind=other, frequency=band[0])
+        twin = export(system, Path(folder) / "twin.fmu", kind=other, frequency=band[0], documentation=False)
         with running(twin) as fmu:
-            fmu.start()
+            fmu.start(source.silenced(network, other))
             histories = chirp.run(fmu, network, signals.part(0, steps))
             expected = {name: values[: steps + 1] for name, values in found.items()}
             moved = measure.largest_deviation(network.outputs, histories, expected, signals.drive)
@@ -165,7 +181,7 @@ def _steady_checks(
     comparisons: list[Comparison] = []
     for load in loads:
         with running(path) as fmu:
-            fmu.start()
+            fmu.start(source.silenced(network, kind_of(path)))
             steady = tones.run_tones(fmu, load, frequency, outputs, base, step, settle, lambda n: advance(n / total))
             check, compared = tones.steady_state_check(network, load, steady, fmu.interpolates, limits.steady)
             checks.append(check)

@@ -6,6 +6,7 @@ from .extras import check_actuators, check_excitation, check_frequency, check_se
 from .joints import check_joints
 from .names import check_names
 from .network import check_network
+from .source import check_source
 
 _RULES = (
     check_frequency,
@@ -16,6 +17,7 @@ _RULES = (
     check_excitation,
     check_actuators,
     check_sensors,
+    check_source,
 )
 
 
