@@ -85,7 +85,8 @@ int gp_session_keep(GpSession *s, const char *function, void **state) {
     if (!place) return gp_session_fail(s, function, "There is not enough memory for the state.");
     c = &s->clock;
     {
-        const double extra[GP_STATE_EXTRA] = {(double)s->phase, s->exchange, c->time, c->stop, c->has_stop, 0};
+        const double extra[GP_STATE_EXTRA] = {(double)s->phase, s->exchange, c->time,
+                                              c->stop, c->has_stop, s->core->jumped};
         gp_state_write(s->core, extra, place);
     }
     *state = place;
@@ -102,12 +103,14 @@ static int restore(GpSession *s, const char *function, const unsigned char *byte
         if (extra[1] != s->exchange || (s->exchange ? co_simulation_only : exchange_only))
             return gp_session_fail(s, function, "The state belongs to the other kind of interface.");
         if ((extra[4] != 0 && extra[4] != 1) || (extra[4] == 1 && extra[3] < extra[2])) break;
+        if (extra[5] != 0 && extra[5] != 1) break;
         if (look_only) return 0;
         if (gp_state_read(s->core, bytes, size, extra)) return gp_session_fail(s, function, s->core->message.text);
         s->phase = (GpPhase)phase;
         s->clock.time = extra[2];
         s->clock.stop = extra[3];
         s->clock.has_stop = extra[4] != 0;
+        s->core->jumped = extra[5] != 0;
         return 0;
     }
     return gp_session_fail(s, function, "The state cannot be used: a number in it is out of range.");

@@ -1,6 +1,7 @@
 """The variable table of the native kind: the common variables, states, source, and in FMI 3 arrays."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -289,16 +290,22 @@ def _state_arrays(network: ModalNetwork, system: tuple[str, ...]) -> Iterable[Va
 
 def _matrices(network: ModalNetwork, system: tuple[str, ...]) -> Iterable[Variable]:
     n, m = 2 * len(network.eigenvalues), len(network.loads)
-    p = sum(output.quantity != "power" for output in network.outputs)
+    linear = [output for output in network.outputs if output.quantity != "power"]
+    p = len(linear)
     states, loads, outputs = "the states", "the loads", "the outputs over time that are no powers, in their order"
-    for kind, name, shape, rows, columns in (
-        (Kind.MATRIX_A, "A", (n, n), "derivatives of the states", states),
-        (Kind.MATRIX_B, "B", (n, m), "derivatives of the states", loads),
-        (Kind.MATRIX_C, "C", (p, n), outputs, states),
-        (Kind.MATRIX_D, "D", (p, m), outputs, loads),
+    # A and C are what remains without loads, B and D what loads do to the system at rest
+    free = Dependencies(replace(network, loads=(), source=None), states=(_STATE,) * n, matrices=True)
+    driven = Dependencies(replace(network, source=None), at_rest=True, matrices=True)
+    for kind, name, shape, rows, columns, structure in (
+        (Kind.MATRIX_A, "A", (n, n), "derivatives of the states", states, free),
+        (Kind.MATRIX_B, "B", (n, m), "derivatives of the states", loads, driven),
+        (Kind.MATRIX_C, "C", (p, n), outputs, states, free),
+        (Kind.MATRIX_D, "D", (p, m), outputs, loads, driven),
     ):
         if 0 in shape:
             continue
+        unknowns = map(structure.of_output, linear) if name in "CD" else map(structure.of_derivative, range(n))
+        found = {parameter for unknown in unknowns for parameter in unknown.parameters}
         yield Variable(
             f"system.{name}",
             kind,
@@ -308,5 +315,5 @@ def _matrices(network: ModalNetwork, system: tuple[str, ...]) -> Iterable[Variab
             f"Matrix {name} of the state equations x' = A x + B u, y = C x + D u: {rows} by {columns}",
             1.0,
             shape=shape,
-            initial_dependencies=system,
+            initial_dependencies=tuple(parameter for parameter in system if parameter in found),
         )

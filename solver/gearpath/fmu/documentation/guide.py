@@ -59,7 +59,7 @@ derivatives: then they vary <strong>linearly</strong> over the coming step, whic
 derivative lasts one step. Held inputs lag by half a step: for a tone of frequency F and a step h the error is
 about π F h of the response (3 % at 1 kHz and 10 µs), linear ones leave about (π F h)<sup>2</sup>/3.</p>
 <p>Model exchange: the importer's solver sees the inputs as they are. The system is linear and stiff, with modes
-up to {highest} Hz: use an implicit solver, or co-simulation.</p>
+up to {highest} kHz: use an implicit solver, or co-simulation.</p>
 """,
     "3.0": """
 <p>Steps are exact for the signal between communication points, at any step size from 1 µs to 1 s, fixed or not;
@@ -71,7 +71,7 @@ integrated exactly too. After the step it is called again to read results. Held 
 tone of frequency F and a step h the error is about π F h of the response (3 % at 1 kHz and 10 µs), linear ones
 leave about (π F h)<sup>2</sup>/3.</p>
 <p>Model exchange: the importer's solver sees the inputs as they are. The system is linear and stiff, with modes
-up to {highest} Hz: use an implicit solver, or co-simulation.</p>
+up to {highest} kHz: use an implicit solver, or co-simulation.</p>
 """,
 }
 
@@ -145,7 +145,7 @@ def _source(source: MeshSource) -> str:
 
 def inputs(fmi: str, highest: float) -> str:
     """What holds between communication points; `highest` is the largest natural frequency, Hz."""
-    return _INPUTS[fmi].format(highest=f"{highest:.3g}")
+    return _INPUTS[fmi].format(highest=f"{highest / 1000.0:.3g}")
 
 
 def behaviour(network: ModalNetwork, fmi: str) -> str:

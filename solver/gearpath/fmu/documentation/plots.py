@@ -17,7 +17,8 @@ from ..variables import excitation_of, transfer_unit
 from .svg import DASHES, Curve, legend, plot
 
 LOWEST, HIGHEST, POINTS = 20.0, 5000.0, 400  # Hz, of the plots where nothing else is asked for
-_NEAR = np.array([-0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03])  # lines added beside a natural frequency, relative
+# Lines added beside a natural frequency, relative to it; not on it, where an undamped machine has no finite response.
+_NEAR = np.array([-0.03, -0.01, -0.003, -0.0005, 0.0005, 0.003, 0.01, 0.03])
 _DEPTH = 120.0  # dB, of the largest axis
 _RETURNED = "1.5 3"  # the dash of power that flows back
 
