@@ -132,29 +132,30 @@ static int check_counts(GpInstance *p, const unsigned int *unknown, size_t unkno
     return -1;
 }
 
-/* The changes of all unknowns: written to `result`, or (with weights) summed up to result[0]. */
-static int changes(GpInstance *p, const unsigned int *unknown, size_t unknowns, const double *weight, double *result) {
+/* The changes of all unknowns: written to `result`, or summed up with weights to result[0]. */
+static int changes(GpInstance *p, const unsigned int *unknown, size_t unknowns, int summed, const double *weight,
+                   double *result) {
     const GpModel *m = &p->model;
     int responded = 0;
     size_t at = 0;
     follow(p);
-    if (weight) result[0] = 0;
+    if (summed) result[0] = 0; /* also without unknowns, when there may be no weights */
     for (size_t i = 0; i < unknowns; i++) {
         const GpVariable *v = m->variable + unknown[i];
         const size_t size = gp_variable_size(m, v);
         for (size_t k = 0; k < size; k++, at++) {
             const GpVariable element = gp_variable_element(m, v, k);
             double change = 0;
-            if (weight && weight[at] == 0) continue;
+            if (summed && weight[at] == 0) continue;
             if (change_of(p, unknown[i], &element, &responded, &change)) return -1;
             if (!gp_finite(change)) return gp_refuse(p, unknown[i], " has a derivative that overflows.");
-            if (weight)
+            if (summed)
                 result[0] += weight[at] * change;
             else
                 result[at] = change;
         }
     }
-    if (!weight || gp_finite(*result)) return 0;
+    if (!summed || gp_finite(*result)) return 0;
     gp_text_clear(&p->message);
     gp_text_add(&p->message, "The weighted sum of the derivatives overflows; check the seeds.");
     return -1;
@@ -169,7 +170,7 @@ int gp_directional(GpInstance *p, const unsigned int *unknown, size_t unknowns, 
         for (size_t k = 0; k < size; k++, seed++)
             if (add_seed(p, known[i], k, *seed)) return -1;
     }
-    return changes(p, unknown, unknowns, NULL, result);
+    return changes(p, unknown, unknowns, 0, NULL, result);
 }
 
 int gp_adjoint(GpInstance *p, const unsigned int *unknown, size_t unknowns, const unsigned int *known,
@@ -179,7 +180,7 @@ int gp_adjoint(GpInstance *p, const unsigned int *unknown, size_t unknowns, cons
         const size_t size = gp_variable_size(&p->model, p->model.variable + known[i]);
         for (size_t k = 0; k < size; k++, result++) {
             gp_tangent_clear(&p->tangent, &p->model);
-            if (add_seed(p, known[i], k, 1) || changes(p, unknown, unknowns, seed, result)) return -1;
+            if (add_seed(p, known[i], k, 1) || changes(p, unknown, unknowns, 1, seed, result)) return -1;
         }
     }
     return 0;

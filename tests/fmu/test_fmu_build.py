@@ -4,13 +4,12 @@ import hashlib
 import importlib.util
 import json
 import shutil
-import subprocess
 import zipfile
 
 import numpy as np
 import pytest
 from fmu_driver import Fmu
-from fmu_helpers import HEADERS, MANIFEST, ROOT, stale
+from fmu_helpers import MANIFEST, ROOT, stale
 
 
 @pytest.fixture
@@ -77,26 +76,3 @@ def test_sources_compile_to_the_same_numbers(network, fmu_path, unpacked, tmp_pa
         fmu.free()
     scale = np.abs(results[0]).max(axis=0)
     assert (np.abs(results[0] - results[1]).max(axis=0) <= 1e-12 * scale).all()
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(not shutil.which("gcc"), reason="needs gcc")
-def test_gcc_compiles_without_a_warning(tmp_path):
-    sources = sorted(str(p) for p in (ROOT / "fmu_src").glob("*.c"))
-    flags = [
-        "-std=c99",
-        "-O2",
-        "-fPIC",
-        "-shared",
-        "-Wall",
-        "-Wextra",
-        "-Wpedantic",
-        "-Wconversion",
-        "-Werror",
-    ]
-    done = subprocess.run(
-        ["gcc", *flags, "-isystem", str(HEADERS), "-o", str(tmp_path / "x.so"), *sources],
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr

@@ -1,7 +1,7 @@
 """Resource locations: file URIs with odd characters, and the paths they mean on Windows."""
 
-import shutil
 import subprocess
+import sys
 
 import pytest
 from fmu_driver import Fmu
@@ -60,13 +60,12 @@ int main(int argc, char **v) {
 @pytest.fixture(scope="module")
 def windows_path(tmp_path_factory):
     """The decoding for Windows, which is plain C, run here."""
-    compiler = shutil.which("gcc")
-    if compiler is None:
-        pytest.skip("needs gcc")
+    pytest.importorskip("ziglang")
+    compiler = [sys.executable, "-m", "ziglang", "cc"]
     folder, source = tmp_path_factory.mktemp("probe"), ROOT / "fmu_src"
     (folder / "probe.c").write_text(PROBE)
     files = [folder / "probe.c", source / "gp_path.c", source / "gp_text.c"]
-    subprocess.run([compiler, "-I", source, *files, "-o", folder / "probe"], check=True)
+    subprocess.run([*compiler, "-I", source, *files, "-o", folder / "probe"], check=True)
 
     def decode(location):
         return subprocess.run([folder / "probe", location], capture_output=True, text=True, check=False).stdout

@@ -71,6 +71,7 @@ def test_whole_main_job(installed):
     assert done.returncode == 0, done.stdout + done.stderr
     assert {p.name for p in (installed / "build" / "gearbox").iterdir()} == {
         "gearbox.fmu",
+        "gearbox-fmi3.fmu",
         "gearbox-python.fmu",
         "report.html",
     }
