@@ -111,7 +111,13 @@ static int change_of(GpInstance *p, unsigned int reference, const GpVariable *v,
     case GP_FRF_IMAG: break;
     default: return gp_refuse(p, reference, " is neither an output nor a derivative: it has no derivative.");
     }
-    if (!*responded && (gp_response(p) || follow_response(p, &p->response, t->frequency))) return -1;
+    if (!*responded) {
+        if (gp_response(p)) return -1;
+        if (p->frequency == 0)
+            gp_respond_not_tangent(&p->tangent.response, m);
+        else if (follow_response(p, &p->response, p->frequency < 0 ? -t->frequency : t->frequency))
+            return -1;
+    }
     *responded = 1;
     switch (v->kind) {
     case GP_ALPHA: *change = t->response.alpha_part[v->a]; break;

@@ -125,6 +125,15 @@ int gp_respond(GpResponse *p, const GpSystem *s, const GpModel *m, const double 
     return gp_finite(check) ? 0 : -1;
 }
 
+void gp_respond_not(GpResponse *p, const GpModel *m) {
+    memset(p->v, 0, m->modes * sizeof *p->v);
+    memset(p->g, 0, m->rows * sizeof *p->g);
+    memset(p->alpha, 0, m->joints * sizeof *p->alpha);
+    memset(p->alpha_part, 0, sizeof p->alpha_part);
+    p->input = 0;
+    p->omega = 1; /* transfers divide by it */
+}
+
 /* The derivative of mean_power. */
 static double mean_power_tangent(GpComplex v, GpComplex g, GpComplex dv, GpComplex dg) {
     return mean_power(dv, g) + mean_power(v, dg);
@@ -195,6 +204,14 @@ int gp_respond_tangent(GpResponseTangent *t, GpResponse *p, const GpSystem *s, c
     t->input = 0.5 * (dpush * power + push * dpower + dw * held + w * dheld);
     power_ratios_tangent(t, p, m);
     return 0;
+}
+
+void gp_respond_not_tangent(GpResponseTangent *t, const GpModel *m) {
+    memset(t->v, 0, m->modes * sizeof *t->v);
+    memset(t->g, 0, m->rows * sizeof *t->g);
+    memset(t->alpha, 0, m->joints * sizeof *t->alpha);
+    memset(t->alpha_part, 0, sizeof t->alpha_part);
+    t->input = t->omega = 0;
 }
 
 GpComplex gp_transfer_tangent(const GpResponseTangent *t, const GpResponse *p, const GpModel *m, size_t output) {

@@ -24,6 +24,9 @@ typedef struct {
 int gp_respond(GpResponse *p, const GpSystem *s, const GpModel *m, const double *K, const double *C,
                double frequency, size_t load);
 
+/* The response at 0 Hz: none, since powers and velocities of a machine at rest are zero. */
+void gp_respond_not(GpResponse *p, const GpModel *m);
+
 /* Transfer from the load to one output (not a power). */
 GpComplex gp_transfer(const GpResponse *p, const GpModel *m, size_t output);
 
@@ -40,6 +43,9 @@ typedef struct {
 /* From the present response; `X` (N), dK and dC (blocks) are the directions. Overwrites p->work only. */
 int gp_respond_tangent(GpResponseTangent *t, GpResponse *p, const GpSystem *s, const GpModel *m, const double *K,
                        const double *C, const double *X, const double *dK, const double *dC, double frequency);
+
+/* The change of no response: none. */
+void gp_respond_not_tangent(GpResponseTangent *t, const GpModel *m);
 
 GpComplex gp_transfer_tangent(const GpResponseTangent *t, const GpResponse *p, const GpModel *m, size_t output);
 

@@ -8,18 +8,27 @@
 #include "gp_memory.h"
 #include "gp_waves.h"
 
-/* Where each output is found among the observed rows: forces and receiver velocities of joints only once. */
+/* The first receiver velocity that is this row, or `none`. */
+static size_t find_receiver(const GpModel *m, const double *row, size_t none) {
+    for (size_t k = 0; k < m->rows; k++)
+        if (!memcmp(row, m->receiver + k * m->modes, m->modes * sizeof *row)) return m->outputs + m->rows + k;
+    return none;
+}
+
+/* Where the value of each observed row is found, so that equal rows are computed once: many joints share a receiver, and
+   outputs are mostly forces and receiver velocities of joints. */
 static void find_places(GpInstance *p) {
     const GpModel *m = &p->model;
+    const size_t forces = m->outputs, velocities = m->outputs + m->rows;
     for (size_t i = 0; i < m->outputs; i++) {
         const GpOutput *o = m->output + i;
-        const double *row = m->output_rows + i * m->modes;
         p->place[i] = i;
-        if (o->quantity == GP_FORCE) p->place[i] = m->outputs + m->joint[o->joint].first + o->dof;
-        if (o->quantity != GP_VELOCITY) continue;
-        for (size_t k = 0; k < m->rows; k++)
-            if (!memcmp(row, m->receiver + k * m->modes, m->modes * sizeof *row))
-                p->place[i] = m->outputs + m->rows + k;
+        if (o->quantity == GP_FORCE) p->place[i] = forces + m->joint[o->joint].first + o->dof;
+        if (o->quantity == GP_VELOCITY) p->place[i] = find_receiver(m, m->output_rows + i * m->modes, i);
+    }
+    for (size_t k = 0; k < m->rows; k++) {
+        p->place[forces + k] = forces + k;
+        p->place[velocities + k] = find_receiver(m, m->receiver + k * m->modes, velocities + k);
     }
 }
 
@@ -339,8 +348,7 @@ int gp_step(GpInstance *p, double time, double h) {
     double *to = p->next, check = 0;
     const GpDiscrete *d;
     if (gp_use_parameters(p)) return -1;
-    if (!gp_finite(frequency) || frequency <= 0)
-        return fail_step(p, "The input frequency leaves the positive numbers within this step.");
+    if (!gp_finite(frequency)) return fail_step(p, "The input frequency overflows within this step.");
     if (tones == GP_NONE)
         return fail_step(p, "The gear mesh makes more than 200,000 cycles within this step; use a smaller step.");
     if (p->model.source_load != GP_NONE && !gp_source_can_advance(&p->source, h))

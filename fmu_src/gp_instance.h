@@ -43,7 +43,7 @@ typedef struct {
     GpSystem system;
     GpMotion motion;
     GpModes modes;
-    size_t *place;            /* (outputs) row of `modes.observe` */
+    size_t *place;            /* (rows of `modes.observe`) the row that has the value of each */
     double *seen;             /* (rows of `modes.observe`) values of this epoch */
     unsigned long long *seen_in, epoch; /* the epoch each was computed in; every change begins a new one */
     GpResponse response;      /* at the input `frequency`, of the excitation */

@@ -32,7 +32,7 @@ static void lay_out_system(GpInstance *p, Arena *arena) {
     p->modes.force = take(arena, m->loads * n);
     p->modes.observe = take(arena, observed * n);
     p->modes.through = take(arena, observed * m->loads);
-    p->place = (size_t *)(void *)take(arena, m->outputs);
+    p->place = (size_t *)(void *)take(arena, observed);
     p->seen = take(arena, observed);
     p->seen_in = (unsigned long long *)(void *)take(arena, observed);
 }

@@ -173,8 +173,6 @@ static int set_ends(GpSession *s, const char *function, const unsigned int *refe
             slope = (value[i] - now) / s->step;
             if (!gp_finite(slope))
                 return passed(s, function, gp_refuse(s->core, reference[i], " must be set to a finite number."));
-            if (s->core->model.variable[reference[i]].kind == GP_FREQUENCY && !(value[i] > 0))
-                return passed(s, function, gp_refuse(s->core, reference[i], " is a frequency and must be positive."));
             if (!look_only && passed(s, function, gp_set_slope(s->core, reference + i, 1, &first, &slope))) return -1;
         }
     return 0;

@@ -79,11 +79,11 @@ static int check_scalar(GpInstance *p, unsigned int reference, const GpVariable 
     if (!gp_finite(value)) return gp_refuse(p, reference, " must be set to a finite number.");
     switch (v->kind) {
     case GP_INPUT:
+    case GP_FREQUENCY:
     case GP_SPEED:
     case GP_TONE_AMPLITUDE:
     case GP_TONE_PHASE:
     case GP_STATE: return 0;
-    case GP_FREQUENCY: return value > 0 ? 0 : gp_refuse(p, reference, " is a frequency and must be positive.");
     case GP_STIFFNESS:
     case GP_DAMPING:
         if (v->b != v->c || value >= 0) return 0;
@@ -241,6 +241,7 @@ static void keep(GpInstance *p, size_t row, double of_states) {
 /* Row of `modes.observe` in the modal form: an output, a joint force or a receiver velocity. */
 static double observed(GpInstance *p, size_t row) {
     const size_t n = 2 * p->model.modes;
+    row = p->place[row];
     if (p->seen_in[row] != p->epoch) keep(p, row, p->kernels->dot(p->modes.observe + row * n, p->now, n));
     return p->seen[row];
 }
@@ -269,7 +270,7 @@ static double time_output(GpInstance *p, size_t output) {
     const GpOutput *o = m->output + output;
     double power = 0;
     if (!p->modal) return gp_system_output(m, gp_motion(p), output);
-    if (o->quantity != GP_POWER) return observed(p, p->place[output]);
+    if (o->quantity != GP_POWER) return observed(p, output);
     for (size_t i = 0; i < m->joint[o->joint].size; i++) {
         const size_t force = m->outputs + m->joint[o->joint].first + i;
         power += observed(p, force) * observed(p, force + m->rows);
@@ -300,9 +301,12 @@ static int singular(GpInstance *p, double frequency) {
 }
 
 int gp_response(GpInstance *p) {
+    const double frequency = gp_magnitude(p->frequency); /* importers probe inputs around 0 */
     if (p->response_ready) return 0;
-    if (gp_respond(&p->response, &p->system, &p->model, p->K, p->C, p->frequency, p->model.excitation))
-        return singular(p, p->frequency);
+    if (frequency == 0)
+        gp_respond_not(&p->response, &p->model);
+    else if (gp_respond(&p->response, &p->system, &p->model, p->K, p->C, frequency, p->model.excitation))
+        return singular(p, frequency);
     p->response_ready = 1;
     return 0;
 }

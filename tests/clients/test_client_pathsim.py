@@ -2,9 +2,6 @@
 
 The loads are sources, evaluated at every stage of the solver. What pathsim-fmi 0.1.1 cannot do:
 
-- Whenever it assembles a graph, PathSim sets every input of a block to 0 and varies it by 1e-8 to see whether it acts
-  on the outputs at once (`Simulation._assemble_graph`, `DynamicalSystem.__len__`). The FMU refuses a frequency of 0 or
-  below, as its declared minimum says. So `frequency` is kept out of the block's ports and keeps its start value.
 - It reads all outputs with room for one value each (`FMUWrapper.get_real`), so those of FMI 3 that are arrays are kept
   out of the ports as well; `CoSimulationFMU` reads them when it is made, so FMI 3 co-simulation is by its wrapper. Nor
   does `start_values` take arrays: matrices are set in event mode, by its wrapper.
@@ -39,7 +36,6 @@ def block_of(fmu, **start):
     """The block with those ports that PathSim can serve."""
     block = ModelExchangeFMU(str(fmu), start_values={"frequency": FREQUENCY, **start})
     wrapper = block.fmu_wrapper
-    wrapper.input_refs = {name: wrapper.input_refs[name] for name in LOADS}
     wrapper.output_refs = {name: wrapper.output_refs[name] for name in WATCHED}
     block.inputs, block.outputs = wrapper.create_port_registers()
     return block
@@ -48,8 +44,9 @@ def block_of(fmu, **start):
 def simulate(block):
     """The outputs at 0, 1, 2 ... COUNT times the interval, to the solver's tolerance."""
     sources = [Source(lambda time, load=load: TONES(time)[load]) for load in range(len(LOADS))]
+    sources.append(Constant(FREQUENCY))
     scope = Scope(sampling_period=INTERVAL)
-    connections = [Connection(source, block[name]) for source, name in zip(sources, LOADS)]
+    connections = [Connection(source, block[name]) for source, name in zip(sources, [*LOADS, "frequency"])]
     connections += [Connection(block[name], scope[place]) for place, name in enumerate(WATCHED)]
     simulation = Simulation(
         [*sources, block, scope],

@@ -181,6 +181,27 @@ def test_outputs_over_frequency_by_frequency(networks, case, version, exchange):
     it.fmu.free()
 
 
+@EITHER
+def test_frequencies_at_and_below_zero(networks, version, exchange):
+    """Importers ground unconnected inputs, and probe around 0: no response at 0, by its magnitude below."""
+    it = Tangent(networks["error", version], exchange=exchange)
+    it.fmu.enter("event" if exchange else "stepping")
+    names, damping = it.over_frequency, "gear_train.modal_damping"
+    it.set("frequency", np.array(500.0))
+    at_500, slope = it.fmu.get(names), it.along(names, ["frequency"], [1.0])
+    assert np.all(at_500 != 0)
+    it.set("frequency", np.array(0.0))
+    assert not it.fmu.get(names).any()
+    assert not it.along(names, ["frequency", damping], [1.0, 1.0]).any()
+    it.set("frequency", np.array(1e-8))
+    assert np.isfinite(it.fmu.get(names)).all()
+    it.set("frequency", np.array(-500.0))
+    assert it.fmu.get(names).tolist() == at_500.tolist()
+    assert it.along(names, ["frequency"], [-1.0]).tolist() == slope.tolist()
+    assert it.fmu.get(["frequency"]).tolist() == [-500.0]
+    it.fmu.free()
+
+
 def test_one_entry_of_a_matrix(networks):
     """Without its mirror, which no value can show: g_1 = K_12 u_2 moves, g_2 does not, and both add up."""
     it = Tangent(networks["error", 3], exchange=True)

@@ -97,8 +97,6 @@ def test_a_failed_set_changes_nothing(fmu):
     [
         (SHAKER, math.nan, "finite"),
         (SHAKER, math.inf, "finite"),
-        ("frequency", 0.0, "positive"),
-        ("frequency", -1.0, "positive"),
         ("frequency", math.inf, "finite"),
         (ZETA, -1e-9, "at least 0"),
         (ZETA, 1.0, "less than 1"),
@@ -237,8 +235,8 @@ def test_input_derivatives_refused(fmu):
         refused(fmu, fmu.set_slopes({SHAKER: 1.0}, order), "order 1 only")
     refused(fmu, fmu.set_slopes({K11: 1.0}), "not an input")
     refused(fmu, fmu.set_slopes({SHAKER: math.nan}), "finite")
-    assert fmu.set_slopes({"frequency": -1e9}) == OK
-    refused(fmu, fmu.step(0.0, 1e-5), "frequency leaves the positive numbers")
+    assert fmu.set_slopes({"frequency": 1e308}) == OK
+    refused(fmu, fmu.step(0.0, 100.0), "frequency overflows")
     assert fmu.set({"frequency": 100.0}) == OK
     assert fmu.step(0.0, 1e-5) == OK
 

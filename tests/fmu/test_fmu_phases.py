@@ -73,7 +73,7 @@ def test_every_function_of_fmi3_within_a_step(unpacked3, row, within):
     calls.keep()
     for instance in (fmu, quiet):
         assert instance.step(0.0, 1e-5) == OK, fmu.messages
-    (status, messages), = found
+    ((status, messages),) = found
     if within in ALLOWED[3][row][0]:
         assert (status, messages) == (OK, 0), fmu.messages
         if function != "SetFloat64":

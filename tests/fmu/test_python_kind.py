@@ -123,7 +123,7 @@ def test_values_that_can_never_be_are_refused_and_the_old_ones_stay(host):
     refused = {
         K11: (-1.0, "negative"),
         K22: (float("nan"), "finite"),
-        "frequency": (0.0, "positive"),
+        "frequency": (float("inf"), "finite"),
         "gear_train.modal_damping": (1.0, "damping ratio"),
         "alpha": (1.0, "output"),
         "casing.mass": (13.0, "fixed"),
@@ -139,6 +139,17 @@ def test_values_that_can_never_be_are_refused_and_the_old_ones_stay(host):
         host.slave.getReal([100_000])
     with pytest.raises(FMICallException):
         host.slave.setInteger([0], [1])
+
+
+def test_frequencies_at_and_below_zero(host):
+    """As in the native kind: no response at 0, by its magnitude below."""
+    host.start()
+    host.set({"frequency": 700.0})
+    at_700 = host.get(*ALPHA)
+    host.set({"frequency": 0.0})
+    assert host.get(*ALPHA) == [0.0] * len(ALPHA)
+    host.set({"frequency": -700.0})
+    assert host.get(*ALPHA) == at_700
 
 
 def test_matrix_may_be_indefinite_while_its_entries_are_set(host):

@@ -3,6 +3,7 @@
 Knows nothing of FMI. Bundled into the FMU; imports floors 1 to 4 only.
 """
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -223,7 +224,7 @@ class Machine:
         if self._response is None:
             try:
                 with np.errstate(all="ignore"):
-                    values = _response(self._network, self._frequency)
+                    values = _response(self._network, abs(self._frequency))
             except GearpathError:
                 values = {"alpha": np.nan}
             if not np.isfinite(list(values.values())).all():
@@ -241,6 +242,8 @@ def _belongs(joint: str, path: str) -> bool:
 
 def _response(network: ModalNetwork, frequency: float) -> dict[str, float]:
     """Power ratios and transfers from the excitation at one frequency (Hz), by the name of the variable."""
+    if frequency == 0.0:
+        return defaultdict(float)  # no vibration, no power
     omega = np.array([2.0 * np.pi * frequency])
     flow = power_flow(network, omega)
     values = {

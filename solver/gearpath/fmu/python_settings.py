@@ -35,8 +35,6 @@ class Entry:
             raise InputError(f"{self.name} is an output and cannot be set")
         if not np.isfinite(value):
             raise InputError(f"{self.name} must be set to a finite number, not {value}")
-        if self.kind == "frequency" and value <= 0.0:
-            raise InputError(f"frequency must be positive, not {value:g} Hz")
         if self.kind == "modal_damping" and not 0.0 <= value < 1.0:
             raise InputError(f"{self.name} is a damping ratio: at least 0 and less than 1, not {value:g}")
         if self.kind in ("stiffness", "damping") and self.row == self.column and value < 0.0:

@@ -163,10 +163,9 @@ def inputs(network: ModalNetwork, frequency: float) -> Iterable[Variable]:
         (0, 0, 0),
         "input",
         "Hz",
-        "Frequency of the frequency-domain outputs; without effect on the others",
+        "Frequency of the frequency-domain outputs (its magnitude); without effect on the others",
         1000.0,
         start=float(frequency),
-        minimum=1e-6,
     )
 
 

@@ -240,8 +240,8 @@ _put(
     "2 3",
     "start-range",
     {
-        "2": attributes("//ScalarVariable[@name='frequency']/Real", start="0"),
-        "3": attributes("//Float64[@name='frequency']", start="0"),
+        "2": attributes("//ScalarVariable[@name='mount_1.stiffness']/Real", start="-1"),
+        "3": attributes("//Float64[@name='mount_1.stiffness']", start="-1"),
     },
 )
 _put("start above the max of its type", "rich", "start-range", attributes("//*[@name='u']", start="11"))

@@ -33,7 +33,7 @@ motion is iω d e. P<sub>in</sub> is the power that the excitation puts in, whic
 are peak amplitudes, e<sup>+iωt</sup>; powers are time averages. Paths are the degrees of freedom of {paths}; α lies
 below 1, while single paths can exceed it where others return power. The excitation of all ratios and of the outputs
 <code>frf.*</code> is <code>{excitation}</code>; they follow the input <code>frequency</code> and all parameters at
-once, and have no memory.</p>
+once, have no memory, and are 0 at 0 Hz.</p>
 <p>Frame: z along the shafts, y along the line of action, x across, right-handed; rotations by the right hand.
 All units are SI. Method: Rook and Singh, Structure-borne noise power flow in gearboxes, 1996 (mobility
 synthesis).</p>
