@@ -76,11 +76,11 @@ def build(runtime: Path = RUNTIME) -> bool:
     )
     for file, content in binaries.items():
         _write(runtime / "binaries" / file, content)
-    for source in [*_sources(), *(headers / header for header in HEADERS)]:
+    for source in _sources():
         _write(runtime / "sources" / source.name, source.read_bytes())
     for slave in _slaves():
         _write(runtime / "pythonfmu" / slave.name, slave.read_bytes())
-    for stale in {p.name for p in (runtime / "sources").iterdir()} - set(wanted["sources"]) - set(wanted["headers"]):
+    for stale in {p.name for p in (runtime / "sources").iterdir()} - set(wanted["sources"]):
         (runtime / "sources" / stale).unlink()
     _write(runtime / "LICENSE.txt", (ROOT / "LICENSE").read_bytes())
     wanted["binaries"] = {file: _hash(content) for file, content in sorted(binaries.items())}
@@ -151,7 +151,7 @@ def _is_current(runtime: Path, wanted: dict[str, Any]) -> bool:
     except (OSError, ValueError):
         return False
     wanted = json.loads(json.dumps({**wanted, "binaries": present}))
-    whole = copies == {**wanted["sources"], **wanted["headers"]} and slaves == wanted["slaves"]
+    whole = copies == wanted["sources"] and slaves == wanted["slaves"]
     return bool(found == wanted and licence and whole)
 
 

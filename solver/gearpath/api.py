@@ -155,8 +155,10 @@ def export_fmu(
     """
     from .fmu.export import export
 
-    start = model.frequency.start
-    return export(model.system, Path(path), fmi=fmi, kind=kind, frequency=start, documentation=documentation)
+    band = (model.frequency.start, model.frequency.stop)
+    return export(
+        model.system, Path(path), fmi=fmi, kind=kind, frequency=band[0], documentation=documentation, band=band
+    )
 
 
 def validate_fmu(

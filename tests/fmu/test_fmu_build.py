@@ -4,11 +4,8 @@ import hashlib
 import importlib.util
 import json
 import shutil
-import zipfile
 
-import numpy as np
 import pytest
-from fmu_driver import Fmu
 from fmu_helpers import MANIFEST, ROOT, stale
 
 
@@ -51,28 +48,3 @@ def test_a_compiler_error_is_shown(build_hook, tmp_path, monkeypatch):
     with pytest.raises(RuntimeError, match="nonsense"):
         hook.build(tmp_path / "runtime")
     assert not (tmp_path / "runtime" / "manifest.json").exists()
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(not (shutil.which("cmake") and shutil.which("cc")), reason="needs cmake and a C compiler")
-def test_sources_compile_to_the_same_numbers(network, fmu_path, unpacked, tmp_path):
-    """`fmpy compile`: the host's compiler makes a binary from sources/ that gives the same doubles."""
-    from fmpy.build import build_platform_binary
-
-    with zipfile.ZipFile(fmu_path) as archive:
-        archive.extractall(tmp_path / "fmu")
-    shutil.rmtree(tmp_path / "fmu" / "binaries")
-    (tmp_path / "build").mkdir()
-    build_platform_binary(tmp_path / "fmu", tmp_path / "build")
-    built = next((tmp_path / "fmu" / "binaries").rglob("gearbox.*"))
-    other = Fmu.unpack(fmu_path, tmp_path / "second", library=built)
-    names = [o.name for o in network.outputs] + ["alpha", "frf.bearing_2.force_rx.im"]
-    results = []
-    for library in (unpacked, other):
-        fmu = Fmu(library)
-        fmu.start()
-        U = np.random.default_rng(5).normal(size=(100, 3)) * [1e-6, 10, 10]
-        results.append(fmu.run([load.name for load in network.loads], U, 1e-5, names))
-        fmu.free()
-    scale = np.abs(results[0]).max(axis=0)
-    assert (np.abs(results[0] - results[1]).max(axis=0) <= 1e-12 * scale).all()

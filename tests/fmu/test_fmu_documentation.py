@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ET
+import zipfile
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -108,6 +109,14 @@ def modal_model(model):
 def page(network, fmi="2.0", **settings):
     variables = native_table(network, 1000.0, fmi)
     return supplements(network, variables, fmi, description="A test", **settings)["documentation/index.html"].decode()
+
+
+def test_plots_cover_the_models_own_range(tmp_path, model):
+    """The range of the model file's [frequency], not a fixed one."""
+    other = model.replace({"frequency.start": 150.0, "frequency.stop": 900.0})
+    with zipfile.ZipFile(gp.export_fmu(other, tmp_path / "range.fmu")) as archive:
+        text = archive.read("documentation/index.html").decode()
+    assert "Power ratio and its parts from 150 to 900 Hz" in " ".join(text.split())
 
 
 @pytest.fixture(scope="module")

@@ -7,6 +7,7 @@ from .._version import __version__
 from ..errors import InputError
 from ..network.assemble import assemble
 from ..network.system import System
+from .documentation import BAND
 from .native import export_native
 from .python_kind import export_python
 
@@ -28,11 +29,13 @@ def export(
     kind: str = "native",
     frequency: float = 1000.0,
     documentation: bool = True,
+    band: tuple[float, float] = BAND,
 ) -> Path:
     """Write the FMU to `path` (a temporary file is moved there at the end) and return the path.
 
-    `frequency` (Hz) is the start value of the input of that name. `documentation` adds plots and reference results to
-    the native kind. Raises InputError for an unknown kind or version of FMI and for a path that cannot be written.
+    `frequency` (Hz) is the start value of the input of that name. `documentation` adds plots over the `band`
+    (Hz) and reference results to the native kind. Raises InputError for an unknown kind or version of FMI and for a
+    path that cannot be written.
     """
     if kind not in KINDS:
         raise InputError(f"kind: there is no kind {kind!r} of FMU; use one of: {', '.join(KINDS)}")
@@ -55,7 +58,8 @@ def export(
     try:
         if kind == "native":
             network = assemble(system).modal().viscous()
-            return export_native(network, path, fmi=fmi, documentation=documentation, **settings)  # type: ignore[arg-type]
+            more = {"fmi": fmi, "documentation": documentation, "band": band}
+            return export_native(network, path, **settings, **more)  # type: ignore[arg-type]
         return export_python(system, path, **settings)  # type: ignore[arg-type]
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror}); choose another place") from error

@@ -13,6 +13,7 @@ from . import runtime_files
 from .binary import model_file, payload
 from .description import Experiment, Identity, model_description
 from .description3 import build_description, model_description3
+from .documentation import BAND
 from .native_table import native_table
 from .package import write_fmu
 from .supplements import supplements
@@ -33,14 +34,15 @@ def export_native(
     version: str,
     fmi: str = "2.0",
     documentation: bool | None = None,
+    band: tuple[float, float] = BAND,
     extra_files: Mapping[str, bytes] | None = None,
 ) -> Path:
     """Write the FMU of `network` to `path`, model exchange and co-simulation, for all platforms; return the path.
 
     `frequency` (Hz) is the start value of the input of that name; times in s; `fmi` is "2.0" or "3.0".
     `documentation`: with plots and reference results (True), a page, terminals and icons only (False), or nothing of
-    the kind (None). `extra_files` go into the FMU under their names. The same arguments give the same bytes; the GUID
-    is a hash of model and description.
+    the kind (None); the plots begin and end where `band` does (Hz). `extra_files` go into the FMU
+    under their names. The same arguments give the same bytes; the GUID is a hash of model and description.
 
     Raises:
         InputError: the network, a name or a time cannot be used.
@@ -82,6 +84,7 @@ def export_native(
             experiment=identity.experiment,
             documentation=documentation,
             reference=documentation,
+            band=band,
         )
     if fmi == "3.0":
         files["sources/buildDescription.xml"] = build_description(identity)

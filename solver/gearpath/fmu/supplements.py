@@ -6,6 +6,7 @@ from .._version import __version__
 from ..network.modal import ModalNetwork
 from ..numerics.arrays import Real
 from .description import Experiment
+from .documentation import BAND
 from .documentation import documentation as documentation_page
 from .icon import icon_png, icon_svg, terminal_png
 from .reference_files import reference_files
@@ -25,12 +26,13 @@ def supplements(
     experiment: Experiment = DEFAULT_EXPERIMENT,
     documentation: bool = True,
     reference: bool = True,
+    band: tuple[float, float] = BAND,
     frequencies: Real | None = None,
 ) -> dict[str, bytes]:
     """All supplementary files by their path in the FMU; the same arguments give the same bytes.
 
-    `variables` are those of the FMU for this version of FMI. `documentation` adds plots over `frequencies` (Hz) and
-    the modes of the assembly to the page; `reference` adds reference inputs and outputs.
+    `variables` are those of the FMU for this version of FMI. `documentation` adds plots over the `band` (Hz; or at
+    `frequencies`) and the modes of the assembly to the page; `reference` adds reference inputs and outputs.
     """
     page = documentation_page(
         network,
@@ -41,6 +43,7 @@ def supplements(
         experiment=experiment,
         plots=documentation,
         reference=reference,
+        band=band,
         frequencies=frequencies,
     )
     files = {

@@ -25,6 +25,7 @@ def model_tables(system: System) -> list[Table]:
         matrix_table(system),
         place_table(system),
         signal_table(system),
+        source_table(system),
     ]
     return [item for item in every if any(group.rows for group in item.groups)]
 
@@ -126,6 +127,18 @@ def signal_table(system: System) -> Table:
     rows = [["actuators." + name, "force", f"{port_name(a.port)}.{a.dof}"] for name, a in system.actuators.items()]
     rows += [["sensors." + name, s.quantity, f"{port_name(s.port)}.{s.dof}"] for name, s in system.sensors.items()]
     return table("Actuators and sensors", ["signal", "quantity", "where"], rows, text=3)
+
+
+def source_table(system: System) -> Table:
+    """The tones of the gear mesh source of native FMUs."""
+    source, rows = system.source, []
+    if source is None:
+        return table("Gear mesh source", ["tone"], [])
+    for tone in source.tones:
+        order = tone.harmonic * source.teeth + tone.shift
+        rows.append([tone.name, given(order), given(tone.amplitude), given(tone.phase)])
+    heading = f"Gear mesh source of native FMUs: {source.load}, {given(source.speed)} rev/min, {source.teeth} teeth"
+    return table(heading, ["tone", "shaft order", "amplitude, m", "phase, rad"], rows)
 
 
 def excitation_words(system: System) -> str:

@@ -11,7 +11,7 @@ from ..description import Experiment
 from ..variables import Variable
 from . import guide, tables
 from .modes import modal_data
-from .plots import HIGHEST, figures
+from .plots import BAND, figures
 from .svg import COLOURS
 
 _ON_DARK = ("#5ab4f0", "#ff9d4d", "#35cba0", "#e0a0bd", "#d8bd4f", "#9fd3f5", "#b8bec5", "#c99ae6")
@@ -85,14 +85,16 @@ def documentation(
     experiment: Experiment,
     plots: bool = True,
     reference: bool = True,
+    band: tuple[float, float] = BAND,
     frequencies: Real | None = None,
 ) -> bytes:
     """documentation/index.html of a native FMU; without `plots` there are no figures and no modes of the assembly.
 
-    `frequencies` (Hz, ascending) are those of the plots; `reference` says whether the FMU has reference files.
+    `band` (Hz) is where the plots begin and end, `frequencies` (Hz, ascending) their very lines; `reference` says
+    whether the FMU has reference files.
     """
-    drawn = figures(network, frequencies) if plots else {}
-    high = min(HIGHEST, network.band) if frequencies is None else float(np.max(frequencies))
+    drawn = figures(network, band, frequencies) if plots else {}
+    high = min(band[1], network.band) if frequencies is None else float(np.max(frequencies))
     sections = {
         "power": ("Power flow", drawn.get("power", "") and drawn["power"] + _POWER_TEXT),
         "transfers": ("Transfers from the excitation", drawn.get("transfers", "")),

@@ -16,7 +16,7 @@ from ...numerics.arrays import Complex, Real
 from ..variables import excitation_of, transfer_unit
 from .svg import DASHES, Curve, legend, plot
 
-LOWEST, HIGHEST, POINTS = 20.0, 5000.0, 400  # Hz, of the plots where nothing else is asked for
+BAND, POINTS = (20.0, 5000.0), 400  # Hz, of the plots where nothing else is asked for
 # Lines added beside a natural frequency, relative to it; not on it, where an undamped machine has no finite response.
 _NEAR = np.array([-0.03, -0.01, -0.003, -0.0005, 0.0005, 0.003, 0.01, 0.03])
 _DEPTH = 120.0  # dB, of the largest axis
@@ -32,18 +32,18 @@ class _Panel:
     curves: Sequence[Curve]
 
 
-def grid(network: ModalNetwork, natural: Real) -> Real:
-    """Frequencies of the plots, Hz: even on a logarithmic axis, dense about the natural frequencies."""
-    high = min(HIGHEST, network.band)
-    low = min(LOWEST, 0.1 * high)
+def grid(network: ModalNetwork, natural: Real, band: tuple[float, float]) -> Real:
+    """Frequencies of the plots in the band, Hz: even on a logarithmic axis, dense about the natural frequencies."""
+    high = min(band[1], network.band)
+    low = band[0] if band[0] < high else 0.1 * high
     near = (natural[(natural > low) & (natural < high)][:, None] * (1.0 + _NEAR)).ravel()
     return np.unique(np.concatenate([np.geomspace(low, high, POINTS), near[(near > low) & (near < high)]]))
 
 
-def figures(network: ModalNetwork, frequencies: Real | None = None) -> dict[str, str]:
+def figures(network: ModalNetwork, band: tuple[float, float], frequencies: Real | None = None) -> dict[str, str]:
     """HTML of the figures by section: "power" and "transfers"; a section without a figure is left out."""
     natural = natural_frequencies(network)
-    f = grid(network, natural) if frequencies is None else np.asarray(frequencies, float)
+    f = grid(network, natural, band) if frequencies is None else np.asarray(frequencies, float)
     found = {}
     if network.paths:
         found["power"] = _figure(_ratios(network, f), f, natural)
