@@ -113,9 +113,7 @@ static int change_of(GpInstance *p, unsigned int reference, const GpVariable *v,
     }
     if (!*responded) {
         if (gp_response(p)) return -1;
-        if (p->frequency == 0)
-            gp_respond_not_tangent(&p->tangent.response, m);
-        else if (follow_response(p, &p->response, p->frequency < 0 ? -t->frequency : t->frequency))
+        if (follow_response(p, &p->response, p->frequency < 0 ? -t->frequency : t->frequency))
             return -1;
     }
     *responded = 1;

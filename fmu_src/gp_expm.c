@@ -50,7 +50,7 @@ static int pade13(GpExpm *w) {
     return gp_solve(w->M, w->n, w->T1, w->n, w->n, w->n);
 }
 
-const double *gp_expm1_matrix(GpExpm *w) {
+double *gp_expm1_matrix(GpExpm *w) {
     const double theta = 5.371920351148152; /* the largest norm for which degree 13 reaches double precision */
     const double norm = largest_column_sum(w);
     const size_t size = w->n * w->n;

@@ -16,6 +16,6 @@ typedef struct {
 /* e^M - I by Pade-13 scaling and squaring (Higham 2005): one of the workspaces, valid until the next call, or NULL
    where the result is not finite. Subtracting the identity before squaring, not after, keeps the slow modes of
    a stiff system accurate (they are small numbers beside it). */
-const double *gp_expm1_matrix(GpExpm *w);
+double *gp_expm1_matrix(GpExpm *w);
 
 #endif

@@ -6,6 +6,8 @@
 
 static const double TWO_PI = 6.283185307179586476925286766559;
 
+static const double LOWEST = 1e-100; /* rad/s: its square, times any stiffness, does not underflow */
+
 static int finite_complex(GpComplex z) { return gp_finite(z.re) && gp_finite(z.im); }
 
 /* Entry i, k of Z = K / (i w) + C inside a joint. */
@@ -73,6 +75,14 @@ static void power_ratios(GpResponse *p, const GpModel *m, double input) {
     }
 }
 
+static void rest(GpResponse *p, const GpModel *m) {
+    memset(p->v, 0, m->modes * sizeof *p->v);
+    memset(p->g, 0, m->rows * sizeof *p->g);
+    memset(p->alpha, 0, m->joints * sizeof *p->alpha);
+    memset(p->alpha_part, 0, sizeof p->alpha_part);
+    p->input = 0;
+}
+
 int gp_respond(GpResponse *p, const GpSystem *s, const GpModel *m, const double *K, const double *C,
                double frequency, size_t load) {
     const size_t N = m->modes, n = m->rows;
@@ -84,6 +94,12 @@ int gp_respond(GpResponse *p, const GpSystem *s, const GpModel *m, const double 
     double check = 0, held = 0;
     p->omega = w;
     p->load = load;
+    p->resting = w < LOWEST;
+    if (p->resting) {
+        p->omega = 1; /* transfers divide by it */
+        rest(p, m);
+        return 0;
+    }
     for (size_t r = 0; r < N; r++) {
         GpComplex numerator, denominator;
         numerator.re = 0;
@@ -125,15 +141,6 @@ int gp_respond(GpResponse *p, const GpSystem *s, const GpModel *m, const double 
     return gp_finite(check) ? 0 : -1;
 }
 
-void gp_respond_not(GpResponse *p, const GpModel *m) {
-    memset(p->v, 0, m->modes * sizeof *p->v);
-    memset(p->g, 0, m->rows * sizeof *p->g);
-    memset(p->alpha, 0, m->joints * sizeof *p->alpha);
-    memset(p->alpha_part, 0, sizeof p->alpha_part);
-    p->input = 0;
-    p->omega = 1; /* transfers divide by it */
-}
-
 /* The derivative of mean_power. */
 static double mean_power_tangent(GpComplex v, GpComplex g, GpComplex dv, GpComplex dg) {
     return mean_power(dv, g) + mean_power(v, dg);
@@ -168,6 +175,14 @@ int gp_respond_tangent(GpResponseTangent *t, GpResponse *p, const GpSystem *s, c
     GpComplex *W = p->work, *T = W + n * n, *v0 = T + n * n;
     double power = 0, held = 0, dheld = 0, dpower = 0;
     t->omega = dw;
+    if (p->resting) {
+        memset(t->v, 0, N * sizeof *t->v);
+        memset(t->g, 0, n * sizeof *t->g);
+        memset(t->alpha, 0, m->joints * sizeof *t->alpha);
+        memset(t->alpha_part, 0, sizeof t->alpha_part);
+        t->input = 0;
+        return 0;
+    }
     for (size_t r = 0; r < N; r++) { /* for now t->v = h' (f - P^T g) + h f' + i w' d */
         const GpComplex inverse = gp_cdiv(gp_complex(0, w), p->h[r]); /* L - w^2 + i w X */
         const GpComplex change = gp_complex(-2 * w * dw, dw * s->X[r] + w * X[r]);
@@ -204,14 +219,6 @@ int gp_respond_tangent(GpResponseTangent *t, GpResponse *p, const GpSystem *s, c
     t->input = 0.5 * (dpush * power + push * dpower + dw * held + w * dheld);
     power_ratios_tangent(t, p, m);
     return 0;
-}
-
-void gp_respond_not_tangent(GpResponseTangent *t, const GpModel *m) {
-    memset(t->v, 0, m->modes * sizeof *t->v);
-    memset(t->g, 0, m->rows * sizeof *t->g);
-    memset(t->alpha, 0, m->joints * sizeof *t->alpha);
-    memset(t->alpha_part, 0, sizeof t->alpha_part);
-    t->input = t->omega = 0;
 }
 
 GpComplex gp_transfer_tangent(const GpResponseTangent *t, const GpResponse *p, const GpModel *m, size_t output) {

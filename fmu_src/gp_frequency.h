@@ -18,14 +18,13 @@ typedef struct {
     double input;      /* input power, W */
     double omega;      /* w, rad/s */
     size_t load;       /* which one acts */
+    int resting;       /* whether the frequency is 0 */
 } GpResponse;
 
-/* 0, or -1 where the response is singular (an undamped resonance exactly at this frequency). */
+/* 0, or -1 where the response is singular (an undamped resonance exactly at this frequency). At 0 Hz, and where w^2
+   underflows, there is none: velocities and powers are 0. */
 int gp_respond(GpResponse *p, const GpSystem *s, const GpModel *m, const double *K, const double *C,
                double frequency, size_t load);
-
-/* The response at 0 Hz: none, since powers and velocities of a machine at rest are zero. */
-void gp_respond_not(GpResponse *p, const GpModel *m);
 
 /* Transfer from the load to one output (not a power). */
 GpComplex gp_transfer(const GpResponse *p, const GpModel *m, size_t output);
@@ -43,9 +42,6 @@ typedef struct {
 /* From the present response; `X` (N), dK and dC (blocks) are the directions. Overwrites p->work only. */
 int gp_respond_tangent(GpResponseTangent *t, GpResponse *p, const GpSystem *s, const GpModel *m, const double *K,
                        const double *C, const double *X, const double *dK, const double *dC, double frequency);
-
-/* The change of no response: none. */
-void gp_respond_not_tangent(GpResponseTangent *t, const GpModel *m);
 
 GpComplex gp_transfer_tangent(const GpResponseTangent *t, const GpResponse *p, const GpModel *m, size_t output);
 

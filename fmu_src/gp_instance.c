@@ -147,21 +147,26 @@ static void to_modal(GpInstance *p) {
     gp_touch(p); /* also where the step then fails: what was computed before belongs to the other form */
 }
 
-/* Keeps q' = s + sum X d_k e_k where X is about to change under the present inputs: a velocity cannot jump with a
-   damping ratio. Before time passes there is nothing to keep: the instance starts at rest with all inputs 0. */
-static void keep_velocity(GpInstance *p) {
+/* Before time passes there is nothing to keep: the instance starts at rest with all inputs 0. */
+void gp_set_damping(GpInstance *p, size_t group, double zeta) {
     const GpModel *m = &p->model;
     const size_t N = m->modes;
-    const double *total = gp_total(p);
-    if (!p->begun) return;
+    const double *total = gp_total(p), old = p->zeta[group];
+    if (old == zeta) return;
+    if (p->begun) to_physical(p);
     for (size_t r = 0; r < N; r++) {
-        const double change = p->system.X[r] - gp_modal_damping(m, p->zeta, r);
-        double motion = 0;
-        if (change == 0) continue;
+        double motion = 0, before, after;
+        p->zeta[group] = old;
+        before = gp_modal_damping(m, p->zeta, r);
+        p->zeta[group] = zeta;
+        after = gp_modal_damping(m, p->zeta, r);
+        if (before == after || !p->begun) continue;
         for (size_t k = 0; k < m->loads; k++) motion += m->mesh[k * N + r] * total[k]; /* d is 0 for forces */
-        p->now[N + r] += change * motion;
+        p->now[N + r] += (before - after) * motion;
         if (motion != 0) p->jumped = 1;
     }
+    p->system_ready = 0;
+    gp_touch(p);
 }
 
 /* Takes over the matrices of joint j, or goes back to the last valid ones with a sentence. */
@@ -206,7 +211,6 @@ int gp_use_parameters(GpInstance *p) {
         copy(p->valid_zeta, p->zeta, m->groups);
         p->as_exported = has_start_parameters(p);
         if (!p->as_exported) to_physical(p);
-        if (!p->modal) keep_velocity(p); /* the modal form always has the start parameters */
         gp_system_form(&p->system, m, p->zeta, p->valid_K, p->valid_C);
         forget_discrete(p);
         p->system_ready = 1;
@@ -266,6 +270,7 @@ void gp_get_nominals(const GpInstance *p, double *nominals) {
 static GpDiscrete *discretise(GpInstance *p, double time, double h) {
     GpDiscrete *best = NULL, *oldest = p->discrete;
     double nearest = gp_clock_jitter(time, h);
+    if (nearest > 1e-6 * h) nearest = 1e-6 * h; /* late times are coarse: steps that differ stay apart */
     for (GpDiscrete *d = p->discrete; d < p->discrete + GP_STEP_SIZES; d++) {
         const double distance = gp_magnitude(d->h - h);
         if (d->h > 0 && distance <= nearest) {
@@ -281,7 +286,7 @@ static GpDiscrete *discretise(GpInstance *p, double time, double h) {
     }
     if (!best->ready) {
         const int failed = p->modal ? gp_discretise_modal(best, &p->model, &p->modes)
-                                    : gp_discretise_physical(best, &p->expm, &p->model, &p->system);
+                                    : gp_discretise_physical(best, &p->expm, &p->rigid, &p->model, &p->system);
         if (failed) {
             best->h = 0;
             return NULL;
@@ -358,7 +363,8 @@ int gp_step(GpInstance *p, double time, double h) {
     if (!d) {
         gp_text_add(&p->message, "The system cannot be discretised for the step size ");
         gp_text_real(&p->message, h);
-        return fail_step(p, " s, because the matrix exponential overflows; use a smaller step.");
+        return fail_step(p, " s: stiffness or damping is too large for it, so that no digits would be left; use a smaller "
+                            "step.");
     }
     from = p->now;
     for (size_t i = 0; i < parts; i++) {

@@ -52,6 +52,7 @@ typedef struct {
     double *order_frequency;  /* (tones) the frequency they were computed for, Hz; 0 where unknown */
     GpTangent tangent;        /* directions and derivatives */
     GpExpm expm;
+    GpRigid rigid;            /* motions that nothing resists, for the discretisation under way */
     GpDiscrete discrete[GP_STEP_SIZES];
     unsigned long long steps; /* steps made, for the age of the discretisations */
     unsigned long long formed; /* discretisations made, for the log */
@@ -72,6 +73,10 @@ int gp_set_slope(GpInstance *p, const unsigned int *reference, size_t count, con
                  const double *value);
 
 void gp_hold(GpInstance *p); /* ends all slopes */
+
+/* Sets a damping ratio and keeps q' = s + sum X d_k e_k under the present inputs: a velocity cannot jump with it. This
+   happens at once, not when the ratio is next used: by then the inputs may be others. */
+void gp_set_damping(GpInstance *p, size_t group, double zeta);
 
 /* What may be done with variables of a kind. */
 typedef enum { GP_IS_INPUT = 1, GP_IS_PARAMETER = 2, GP_IS_STATE = 4, GP_IS_RESULT = 8 } GpRole;

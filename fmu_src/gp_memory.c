@@ -70,7 +70,8 @@ static void lay_out_tangent(GpTangent *t, const GpModel *m, Arena *arena) {
 
 static void lay_out(GpInstance *p, Arena *arena) {
     const GpModel *m = &p->model;
-    const size_t n = 2 * m->modes, order = gp_propagator_order(m), square = order * order;
+    const size_t n = 2 * m->modes, order = gp_propagator_order(m), square = order * order,
+                 rigid = gp_rigid_modes(m);
     p->K = take(arena, m->blocks);
     p->C = take(arena, m->blocks);
     p->valid_K = take(arena, m->blocks);
@@ -98,6 +99,10 @@ static void lay_out(GpInstance *p, Arena *arena) {
     lay_out_response(&p->response, m, arena);
     lay_out_response(&p->order_response, m, arena);
     lay_out_tangent(&p->tangent, m, arena);
+    p->rigid.motion = take(arena, rigid * m->modes);
+    p->rigid.square = take(arena, rigid);
+    p->rigid.gain = take(arena, rigid * m->loads);
+    p->rigid.work = take(arena, rigid * (rigid + 2));
     p->expm.n = order;
     p->expm.M = take(arena, square);
     p->expm.M2 = take(arena, square);

@@ -5,6 +5,8 @@
 #include "gp_linalg.h"
 #include "gp_waves.h"
 
+static const double LARGEST = 1e16; /* of |A h|: beyond it the results keep no more than three digits, then none */
+
 size_t gp_propagator_order(const GpModel *m) {
     return 2 * (m->modes + m->loads) + (m->source_load == GP_NONE ? 0 : GP_LEGENDRE);
 }
@@ -19,21 +21,37 @@ static void add_legendre(double *M, size_t order, const GpModel *m) {
     }
 }
 
-int gp_discretise_physical(GpDiscrete *d, GpExpm *w, const GpModel *m, const GpSystem *s) {
+/* The largest sum of a column of A h: the exponential loses its logarithm in digits (to base 10). */
+static double size_of(const double *M, size_t n, size_t order, double h) {
+    double largest = 0;
+    for (size_t j = 0; j < n; j++) {
+        double sum = 0;
+        for (size_t i = 0; i < n; i++) sum += gp_magnitude(M[i * order + j]);
+        if (!(sum <= largest)) largest = sum; /* keeps a NaN */
+    }
+    return largest * h;
+}
+
+int gp_discretise_physical(GpDiscrete *d, GpExpm *w, GpRigid *rigid, const GpModel *m, const GpSystem *s) {
     const size_t n = 2 * m->modes, order = w->n;
-    const double *F;
+    double *F;
     memset(w->M, 0, order * order * sizeof *w->M);
     gp_system_matrices(s, m, w->M, order);
+    if (!(size_of(w->M, n, order, d->h) <= LARGEST)) return -1;
+    gp_rigid_find(rigid, m, s, w->M, order);
+    gp_rigid_remove(rigid, m, w->M, order);
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < n + m->loads; j++) w->M[i * order + j] *= d->h;
     for (size_t k = 0; k < m->loads; k++) w->M[(n + k) * order + n + m->loads + k] = 1;
     if (m->source_load != GP_NONE) add_legendre(w->M, order, m);
     F = gp_expm1_matrix(w);
     if (!F) return -1;
+    gp_rigid_remove(rigid, m, F, order);
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j < n; j++) d->transition[j * n + i] = F[i * order + j];
         for (size_t j = n; j < order; j++) d->columns[(j - n) * n + i] = F[i * order + j];
     }
+    gp_rigid_add(rigid, m, d->h, d->transition, d->columns);
     d->ready = 1;
     return 0;
 }

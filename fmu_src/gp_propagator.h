@@ -14,6 +14,7 @@
            [  0     0    0       E       ] */
 #include "gp_expm.h"
 #include "gp_modes.h"
+#include "gp_rigid.h"
 
 typedef struct {
     double h;                 /* step size, s; 0 where unused */
@@ -26,8 +27,8 @@ typedef struct {
 /* Order of the matrix M. */
 size_t gp_propagator_order(const GpModel *m);
 
-/* Fills in d for its step size. 0, or -1 where the matrix exponential overflows. */
-int gp_discretise_physical(GpDiscrete *d, GpExpm *w, const GpModel *m, const GpSystem *s);
+/* Fills in d for its step size. 0, or -1 where the matrix A h is so large that no digits would be left. */
+int gp_discretise_physical(GpDiscrete *d, GpExpm *w, GpRigid *rigid, const GpModel *m, const GpSystem *s);
 int gp_discretise_modal(GpDiscrete *d, const GpModel *m, const GpModes *modes);
 
 /* next = state after a step without inputs; then axpy of the columns adds what the inputs do. */

@@ -19,7 +19,7 @@ GpSession *gp_session_create(const char *name, const char *guid, const char *loc
     (void)fclose(stream); /* it was only read */
     if (failed) return NULL;
     if (strcmp(model.guid, guid) != 0) {
-        gp_text_add(message, "The GUID does not belong to resources/model.bin; the FMU's files are mixed up.");
+        gp_text_add(message, "The GUID (FMI 3: the instantiation token) does not belong to resources/model.bin; the FMU's files are mixed up.");
         gp_model_free(&model);
         return NULL;
     }
@@ -75,7 +75,7 @@ int gp_session_allowed(GpSession *s, int phases, const char *function) {
     case GP_INITIALISING: return gp_session_fail(s, function, "This call is not allowed in initialisation mode.");
     case GP_EVENT: return gp_session_fail(s, function, "This call is not allowed in event mode.");
     case GP_CONTINUOUS: return gp_session_fail(s, function, "This call is not allowed in continuous-time mode.");
-    case GP_STEPPING: return gp_session_fail(s, function, "This call is not allowed once the simulation runs.");
+    case GP_STEPPING: return gp_session_fail(s, function, "This call is not allowed once the simulation runs; there is no event mode in co-simulation.");
     case GP_INTERMEDIATE: return gp_session_fail(s, function, "This call is not allowed during a step.");
     default: return gp_session_fail(s, function, "This call is not allowed after terminating; reset the instance first.");
     }

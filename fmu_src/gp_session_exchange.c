@@ -102,7 +102,7 @@ static int restore(GpSession *s, const char *function, const unsigned char *byte
         if (extra[0] != phase || phase == GP_INTERMEDIATE) continue;
         if (extra[1] != s->exchange || (s->exchange ? co_simulation_only : exchange_only))
             return gp_session_fail(s, function, "The state belongs to the other kind of interface.");
-        if ((extra[4] != 0 && extra[4] != 1) || (extra[4] == 1 && extra[3] < extra[2])) break;
+        if (extra[4] != 0 && extra[4] != 1) break;
         if (extra[5] != 0 && extra[5] != 1) break;
         if (look_only) return 0;
         if (gp_state_read(s->core, bytes, size, extra)) return gp_session_fail(s, function, s->core->message.text);

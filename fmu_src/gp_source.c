@@ -4,6 +4,8 @@
 #include "gp_waves.h"
 
 static const double TWO_PI = 6.283185307179586476925286766559;
+/* 1 / (2 pi) in two doubles: large phases keep their place in the circle */
+static const double PER_RADIAN = 0.15915494309189535, PER_RADIAN_REST = -9.839338337591243e-18;
 static const double RESOLVED = 1.5; /* rad of a tone within a step: 12 Legendre polynomials miss 1e-14 of it */
 
 double gp_source_order(const GpSource *s, const GpModel *m, size_t i) {
@@ -52,7 +54,8 @@ static double fraction(double a, double b) {
 /* Cycles of tone i at present, less whole ones. */
 static double cycles(const GpSource *s, const GpModel *m, size_t i) {
     const double past = fraction(m->tone[i].harmonic * s->teeth, s->turns) + fraction(m->tone[i].shift, s->turns);
-    return past + gp_source_order(s, m, i) * (s->part + s->rest) + s->phase[i] / TWO_PI;
+    return past + gp_source_order(s, m, i) * (s->part + s->rest) +
+           (fraction(s->phase[i], PER_RADIAN) + s->phase[i] * PER_RADIAN_REST);
 }
 
 double gp_source_value(const GpSource *s, const GpModel *m) {

@@ -105,9 +105,8 @@ static int scalars_are_good(const GpInstance *p, const double *s) {
     const GpModel *m = &p->model;
     for (size_t i = 0; i < GP_STEP_SIZES; i++)
         if (s[SINGLE + 2 * i] < 0 || !is_count(s[SINGLE + 1 + 2 * i])) return 0;
-    if (s[0] <= 0 || !is_flag(s[8]) || !is_flag(s[9]) || !is_flag(s[10]) || !is_count(s[11])) return 0;
+    if (!is_flag(s[8]) || !is_flag(s[9]) || !is_flag(s[10]) || !is_count(s[11])) return 0;
     if (m->source_load != GP_NONE && !(s[2] >= 1 && s[2] <= 1e6 && is_count(s[2]) && s[6] >= 0 && s[6] <= 1)) return 0;
-    if (gp_magnitude(s[12]) > 1) return 0;
     return s[8] == 0 || m->pairs;
 }
 

@@ -3,6 +3,7 @@
 
 #include "gp_instance.h"
 #include "gp_linalg.h"
+#include "gp_observe.h"
 
 int gp_refuse(GpInstance *p, unsigned int reference, const char *rest) {
     GpText *t = &p->message;
@@ -160,16 +161,13 @@ static void apply_set(GpInstance *p, const GpVariable *v, double value) {
     switch (v->kind) {
     case GP_INPUT:
         change(p, p->input + v->a, value);
-        p->slope[v->a] = 0;
         break;
     case GP_FREQUENCY:
         if (p->frequency != value) p->response_ready = 0;
         p->frequency = value;
-        p->frequency_slope = 0;
         break;
     case GP_SPEED:
         p->source.speed = value;
-        p->source.speed_slope = 0;
         break;
     case GP_STIFFNESS: set_entry(p, v, p->K, value); break;
     case GP_DAMPING: set_entry(p, v, p->C, value); break;
@@ -177,9 +175,20 @@ static void apply_set(GpInstance *p, const GpVariable *v, double value) {
     case GP_TONE_AMPLITUDE: change(p, p->source.amplitude + v->a, value); break;
     case GP_TONE_PHASE: change(p, p->source.phase + v->a, value); break;
     case GP_STATE: set_state(p, v->a, value); break;
-    default:
-        if (p->zeta[v->a] != value) p->system_ready = 0;
-        p->zeta[v->a] = value;
+    default: gp_set_damping(p, v->a, value);
+    }
+}
+
+/* Applies a set to the variables that are inputs, or to those that are not. */
+static void apply(GpInstance *p, const unsigned int *reference, size_t count, const double *value, int inputs) {
+    for (size_t i = 0; i < count; i++) {
+        const GpVariable *v = p->model.variable + reference[i];
+        const size_t size = size_of(&p->model, v);
+        const int chosen = (gp_role(v->kind) == GP_IS_INPUT) == inputs;
+        for (size_t k = 0; k < size; k++, value++) {
+            const GpVariable element = gp_variable_element(&p->model, v, k);
+            if (chosen) apply_set(p, &element, *value);
+        }
     }
 }
 
@@ -192,14 +201,8 @@ int gp_set(GpInstance *p, const unsigned int *reference, size_t count, const dou
         if (check_set(p, reference[i], value + at)) return -1;
         at += size_of(m, m->variable + reference[i]);
     }
-    for (size_t i = 0; i < count; i++) {
-        const GpVariable *v = m->variable + reference[i];
-        const size_t size = size_of(m, v);
-        for (size_t k = 0; k < size; k++, value++) {
-            const GpVariable element = gp_variable_element(m, v, k);
-            apply_set(p, &element, *value);
-        }
-    }
+    if (roles & ~GP_IS_INPUT) apply(p, reference, count, value, 0); /* under the old inputs: the order does not matter */
+    if (roles & GP_IS_INPUT) apply(p, reference, count, value, 1);
     return 0;
 }
 
@@ -229,63 +232,6 @@ void gp_hold(GpInstance *p) {
     p->source.speed_slope = p->frequency_slope = 0;
 }
 
-/* Adds what the loads do to a row of `modes.observe`, and keeps its value. */
-static void keep(GpInstance *p, size_t row, double of_states) {
-    const GpModel *m = &p->model;
-    const double *total = gp_total(p), *through = p->modes.through + row * m->loads;
-    for (size_t k = 0; k < m->loads; k++) of_states += through[k] * total[k];
-    p->seen[row] = of_states;
-    p->seen_in[row] = p->epoch;
-}
-
-/* Row of `modes.observe` in the modal form: an output, a joint force or a receiver velocity. */
-static double observed(GpInstance *p, size_t row) {
-    const size_t n = 2 * p->model.modes;
-    row = p->place[row];
-    if (p->seen_in[row] != p->epoch) keep(p, row, p->kernels->dot(p->modes.observe + row * n, p->now, n));
-    return p->seen[row];
-}
-
-/* The outputs among some variables, four rows at a time; the rest is left to `observed`. */
-static void observe_outputs(GpInstance *p, const unsigned int *reference, size_t count) {
-    const size_t n = 2 * p->model.modes;
-    const double *a[4];
-    double value[4];
-    size_t row[4], found = 0;
-    for (size_t i = 0; i < count; i++) {
-        const GpVariable *v = p->model.variable + reference[i];
-        if (v->kind != GP_OUTPUT || p->model.output[v->a].quantity == GP_POWER) continue;
-        if (p->seen_in[p->place[v->a]] == p->epoch) continue;
-        row[found] = p->place[v->a];
-        a[found] = p->modes.observe + row[found] * n;
-        if (++found < 4) continue;
-        found = 0;
-        p->kernels->dot4(a, p->now, n, value);
-        for (int k = 0; k < 4; k++) keep(p, row[k], value[k]);
-    }
-}
-
-static double time_output(GpInstance *p, size_t output) {
-    const GpModel *m = &p->model;
-    const GpOutput *o = m->output + output;
-    double power = 0;
-    if (!p->modal) return gp_system_output(m, gp_motion(p), output);
-    if (o->quantity != GP_POWER) return observed(p, output);
-    for (size_t i = 0; i < m->joint[o->joint].size; i++) {
-        const size_t force = m->outputs + m->joint[o->joint].first + i;
-        power += observed(p, force) * observed(p, force + m->rows);
-    }
-    return power;
-}
-
-static double port_value(GpInstance *p, const GpVariable *v) {
-    const GpModel *m = &p->model;
-    const size_t row = m->joint[v->a].first + v->b;
-    if (p->modal) return observed(p, m->outputs + row + (v->kind == GP_PORT_FORCE ? 0 : m->rows));
-    if (v->kind == GP_PORT_FORCE) return gp_motion(p)->g[row];
-    return gp_dot(m->receiver + row * m->modes, gp_motion(p)->v, m->modes);
-}
-
 static double derivative_value(GpInstance *p, size_t state) {
     const size_t N = p->model.modes;
     if (state < N) return p->model.scale[state] * gp_motion(p)->v[state];
@@ -303,9 +249,7 @@ static int singular(GpInstance *p, double frequency) {
 int gp_response(GpInstance *p) {
     const double frequency = gp_magnitude(p->frequency); /* importers probe inputs around 0 */
     if (p->response_ready) return 0;
-    if (frequency == 0)
-        gp_respond_not(&p->response, &p->model);
-    else if (gp_respond(&p->response, &p->system, &p->model, p->K, p->C, frequency, p->model.excitation))
+    if (gp_respond(&p->response, &p->system, &p->model, p->K, p->C, frequency, p->model.excitation))
         return singular(p, frequency);
     p->response_ready = 1;
     return 0;
@@ -359,9 +303,9 @@ int gp_value(GpInstance *p, const GpVariable *v, double *value) {
     case GP_TONE_PHASE: *value = p->source.phase[v->a]; return 0;
     case GP_TIME: *value = p->time; return 0;
     case GP_STATE: *value = v->a < 2 * m->modes ? gp_states(p)[v->a] : gp_source_angle(&p->source); return 0;
-    case GP_OUTPUT: *value = time_output(p, v->a); return 0;
+    case GP_OUTPUT: *value = gp_observed_output(p, v->a); return 0;
     case GP_PORT_FORCE:
-    case GP_PORT_VELOCITY: *value = port_value(p, v); return 0;
+    case GP_PORT_VELOCITY: *value = gp_observed_port(p, v); return 0;
     case GP_DERIVATIVE: *value = derivative_value(p, v->a); return 0;
     case GP_ENTRY_A:
     case GP_ENTRY_B:
@@ -388,7 +332,7 @@ int gp_get(GpInstance *p, const unsigned int *reference, size_t count, double *v
     gp_text_clear(&p->message);
     if (check_values(p, reference, count, values, &roles)) return -1;
     if ((roles & GP_IS_RESULT) && gp_use_parameters(p)) return -1;
-    if (p->modal) observe_outputs(p, reference, count);
+    if (p->modal) gp_observe(p, reference, count);
     for (size_t i = 0; i < count; i++) {
         const GpVariable *v = m->variable + reference[i];
         const size_t size = size_of(m, v);

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from pathlib import Path
 from typing import Annotated
 
@@ -74,14 +75,16 @@ def fmu(
     kind: Annotated[
         str, typer.Option(help="native (runs without Python) or python (design parameters too).")
     ] = "native",
-    fmi: Annotated[str, typer.Option(help="Version of FMI.")] = "2.0",
+    fmi: Annotated[str, typer.Option(help="Version of FMI, 2.0 or 3.0.")] = "2.0",
     set_: Settings = [],  # noqa: B006
     json: Json = False,
 ) -> None:
     """Export the model as an FMU."""
     from . import api
 
-    path = api.export_fmu(console.load_with(model, set_), output, fmi=fmi, kind=kind)
+    fmi = {"2": "2.0", "3": "3.0"}.get(fmi, fmi)
+    with warnings.catch_warnings() if json else console.notes():
+        path = api.export_fmu(console.load_with(model, set_), output, fmi=fmi, kind=kind)
     if json:
         console.print_json({"fmu": path, "kind": kind, "fmi": fmi, "bytes": path.stat().st_size})
     else:

@@ -15,7 +15,8 @@ from .modelfile import Model
 
 def export_one(model: Model, path: Path, kind: str, fmi: str) -> Path:
     """Write one FMU and say so."""
-    api.export_fmu(model, path, fmi=fmi, kind=kind)
+    with console.notes():
+        api.export_fmu(model, path, fmi=fmi, kind=kind)
     console.out.print(f"wrote {escape(str(path))} ({kind} kind, FMI {fmi}, {path.stat().st_size / 1e3:.0f} kB)")
     return path
 

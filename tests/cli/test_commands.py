@@ -123,4 +123,4 @@ def test_a_validation_passes(run, tmp_path, kind):
     code, out, _ = run("validate", tmp_path / "it.fmu", MODEL, "--json")
     report = json.loads(out)
     assert code == 0, report
-    assert len(report["checks"]) == 12
+    assert len(report["checks"]) == 13

@@ -27,7 +27,7 @@ def refused(fmu, status, words):
 
 
 BOTH = [
-    ({"token": b"{wrong}"}, "GUID does not belong"),
+    ({"token": b"{wrong}"}, "instantiation token) does not belong"),
     ({"token": b""}, "token is missing"),
     ({"name": b""}, "instance name is missing"),
     ({"location": b""}, "resource path is missing"),

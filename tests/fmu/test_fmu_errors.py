@@ -31,7 +31,7 @@ def fresh(unpacked):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ({"guid": b"{wrong}"}, "GUID does not belong"),
+        ({"guid": b"{wrong}"}, "does not belong to resources/model.bin"),
         ({"name": b""}, "instance name"),
         ({"name": None}, "instance name"),
         ({"kind": 2}, "co-simulation or model exchange"),
@@ -237,7 +237,7 @@ def test_input_derivatives_refused(fmu):
     refused(fmu, fmu.set_slopes({SHAKER: math.nan}), "finite")
     assert fmu.set_slopes({"frequency": 1e308}) == OK
     refused(fmu, fmu.step(0.0, 100.0), "frequency overflows")
-    assert fmu.set({"frequency": 100.0}) == OK
+    assert fmu.set_slopes({"frequency": 0.0}) == OK
     assert fmu.step(0.0, 1e-5) == OK
 
 
@@ -246,6 +246,7 @@ def test_overflow_of_a_step_is_refused(fmu):
     assert fmu.set_slopes({SHAKER: 1.7e308}) == OK
     refused(fmu, fmu.step(0.0, 1.0), "overflows")
     assert fmu.set({SHAKER: 0.0}) == OK
+    assert fmu.set_slopes({SHAKER: 0.0}) == OK
     assert fmu.step(0.0, 1.0) == OK
     assert np.isfinite(fmu.get(list(fmu.reference))).all()
 

@@ -193,3 +193,28 @@ def test_an_entry_that_waits_for_the_others(unpacked):
     assert other.get(["bearing_1.stiffness[1,2]"])[0] == START.joints[0].stiffness[0, 1]
     run.fmu.free()
     other.free()
+
+
+@EITHER
+@pytest.mark.parametrize("frequency", [0.0, -700.0])
+def test_a_state_at_any_frequency(fmus, version, frequency):
+    fmu = new(fmus[version])
+    fmu.start()
+    assert fmu.set({"frequency": frequency}) == OK
+    content = fmu.serialised()
+    assert Keeper(fmu).take(content) == OK, fmu.messages
+    assert fmu.serialised() == content
+    fmu.free()
+
+
+@pytest.mark.parametrize("end", [0.3])
+def test_a_state_past_the_stop_time_by_rounding(fmus, end):
+    """Three steps of 0.1 s end at 0.30000000000000004 s."""
+    fmu = new(fmus[2])
+    fmu.start(stop=end)
+    for i in range(3):
+        assert fmu.step(i * 0.1, 0.1) == OK, fmu.messages
+    content = fmu.serialised()
+    assert Keeper(fmu).take(content) == OK, fmu.messages
+    assert fmu.serialised() == content
+    fmu.free()

@@ -155,9 +155,8 @@ def test_forged(run, network):
         (at["states"] + 3, np.inf),
         (0, 3.0), (0, 4.0), (0, 8.0), (0, 32.0), (0, 128.0), (0, 0.0),  # phases that do not exist, or not here
         (1, 1.0), (1, 2.0),  # the interface
-        (4, 1.0), (4, 0.5),  # a stop time before the time
+        (4, 0.5),  # whether there is a stop time
         (5, 0.5),
-        (at["frequency"], 0.0), (at["frequency"], -5.0),
         (at["flags"], 1.0),  # modal coordinates with parameters that are not those of the start
         (at["flags"] + 1, 0.5), (at["flags"] + 2, 2.0),
         (at["steps"], -1.0), (at["steps"], 1.5), (at["steps"], 1e300),

@@ -87,9 +87,9 @@ def test_extrapolated_input_is_held_afterwards(fmu):
     assert fmu.step(h, h) == OK
     assert fmu.get([name])[0] == pytest.approx(3.0, rel=1e-15)
     assert fmu.set_slopes({name: 1e4}) == OK
-    assert fmu.set({name: 5.0}) == OK  # resets the slope
+    assert fmu.set({name: 5.0}) == OK  # in this order as well
     assert fmu.step(2 * h, h) == OK
-    assert fmu.get([name])[0] == 5.0
+    assert fmu.get([name])[0] == pytest.approx(6.0, rel=1e-15)
 
 
 def test_power_is_force_times_receiver_velocity(fmu, network):
@@ -165,7 +165,7 @@ def test_parameters_change_during_the_run(fmu, network):
     # q is continuous, and so is q' = s + X d e, with the input of the moment of the change
     n, m = B.shape
     change = oracle.modal_damping_matrix(network) - oracle.modal_damping_matrix(second)
-    x[n // 2 :] += change * network.loads[0].mesh_displacement * U[500, 0]
+    x[n // 2 :] += change * network.loads[0].mesh_displacement * U[499, 0]
     E = scipy.linalg.expm(np.block([[A * h, B * h], [np.zeros((m, n + m))]]))
     y2 = []
     for u in U[500:]:
@@ -290,4 +290,59 @@ def test_the_oldest_step_size_is_forgotten(unpacked):
         assert fmu.step(t, h * 1e-5) == OK
         t += h * 1e-5
         assert sum("discretised" in message for message in fmu.messages) == formed, h
+    fmu.free()
+
+
+@pytest.mark.parametrize("names", [["alpha"], ["casing.velocity_uy"], ["gear_train.mode_2.v"]])
+def test_reading_changes_nothing(unpacked, names):
+    """After a damping ratio was set, and before the next input: the change belongs to the inputs of its own moment."""
+    ends = []
+    for reads in (False, True):
+        fmu = Fmu(unpacked)
+        fmu.start()
+        assert fmu.set({"mesh.transmission_error": 1e-6}) == OK
+        assert fmu.step(0.0, 1e-5) == OK
+        for i, zeta in enumerate((0.2, 0.05, 0.015), start=1):
+            assert fmu.set({"gear_train.modal_damping": zeta}) == OK
+            if reads:
+                fmu.get(names)
+            assert fmu.set({"mesh.transmission_error": i * 1e-6}) == OK
+            assert fmu.step(i * 1e-5, 1e-5) == OK
+        ends.append(fmu.get(list(fmu.reference)).tolist())
+        fmu.free()
+    assert ends[0] == ends[1]
+
+
+def test_inputs_and_parameters_of_one_call_have_no_order(unpacked):
+    ends = []
+    for order in (1, -1):
+        fmu = Fmu(unpacked)
+        fmu.start()
+        assert fmu.set({"mesh.transmission_error": 1e-6}) == OK
+        assert fmu.step(0.0, 1e-5) == OK
+        values = {"mesh.transmission_error": 3e-6, "gear_train.modal_damping": 0.2}
+        assert fmu.set(dict(list(values.items())[::order])) == OK
+        ends.append(fmu.get(list(fmu.reference)).tolist())
+        fmu.free()
+    assert ends[0] == ends[1]
+
+
+@pytest.mark.parametrize("start", [0.0, 1e6, 1e9])
+def test_late_times_keep_step_sizes_apart(unpacked, network, start):
+    """At 1e9 s doubles are 1e-7 s apart; steps of 1 and 2 us (powers of 2, exact there) are still told apart."""
+    fmu, sizes = Fmu(unpacked), [2.0**-19, 2.0**-20] * 20
+    fmu.start(start=start)
+    assert fmu.set({"mesh.force": 100.0}) == OK
+    t = start
+    for h in sizes:
+        assert fmu.step(t, h) == OK, fmu.messages
+        t += h
+    A, B, C, D, names = oracle.time_system(network)
+    x = np.zeros(len(A))
+    u = np.array([100.0 if load.name == "mesh.force" else 0.0 for load in network.loads])
+    for h in sizes:
+        E = scipy.linalg.expm(np.block([[A * h, B * h], [np.zeros((3, len(A) + 3))]]))
+        x = E[: len(A), : len(A)] @ x + E[: len(A), len(A) :] @ u
+    found, wanted = fmu.get(names), C @ x + D @ u
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-9 * np.abs(wanted).max())
     fmu.free()

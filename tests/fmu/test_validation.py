@@ -132,3 +132,55 @@ def test_right_fmus_pass(model, changes, tmp_path):
     changed = model.replace(changes)
     report = gp.validate_fmu(gp.export_fmu(changed, tmp_path / "it.fmu"), changed)
     assert report.passed, [(c.name, c.figure, c.limit) for c in report.checks if not c.passed]
+
+
+def spoilt(path, to, old, new):
+    """A copy of an FMU with a changed modelDescription.xml."""
+    with zipfile.ZipFile(path) as source, zipfile.ZipFile(to, "w") as target:
+        for name in source.namelist():
+            content = source.read(name)
+            if name == "modelDescription.xml":
+                assert old in content
+                content = content.replace(old, new, 1)
+            target.writestr(name, content)
+    return to
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (b'guid="{', b'guid="{0'),
+        (b"</ModelVariables>", b""),
+        (b'valueReference="3"', b'valueReference="100003"'),
+        (b'fmiVersion="2.0"', b'fmiVersion="1.0"'),
+        (b'causality="input"', b'causality="output"'),
+        (b'name="bearing_1.force_uy"', b'name="bearing_1.force_uz"'),
+        (b'modelIdentifier="gearbox"', b'modelIdentifier="nothing"'),
+    ],
+)
+def test_damaged_files_give_a_report(model, fmu_path, tmp_path, old, new):
+    """Findings and failed checks, whatever cannot be run; no exception."""
+    report = gp.validate_fmu(spoilt(fmu_path, tmp_path / "spoilt.fmu", old, new), model)
+    assert not report.passed
+    assert report.findings
+    failed = [check.name for check in report.checks if not check.passed]
+    assert failed[0].startswith("conformance to FMI")
+
+
+def test_the_fmu_of_another_model_is_told_as_such(model, fmu_path):
+    """By its variables, before any physics is compared."""
+    last = gp.validate_fmu(fmu_path, gp.load(MODEL.parent / "helical_gearbox.toml")).checks[-1]
+    assert (last.name, last.passed) == ("exported from this model", False)
+    assert "it lacks bearing_1.damping[1,3]" in last.what  # six degrees of freedom there
+    assert "another model" in last.what
+    assert suite.same_model(fmu_path, gp.api.modal_network(model), "native", 20.0).passed
+
+
+def test_an_fmu_with_a_source_is_not_that_of_a_model_without(model, tmp_path):
+    mesh = next(iter(model.system.components["gear_train"].meshes))
+    harmonic = {"order": 1, "amplitude": 1e-6, "phase": 0.0}
+    source = {"mesh": f"gear_train.{mesh}", "speed": 1000.0, "teeth": 30, "harmonics": [harmonic]}
+    path = gp.export_fmu(model.replace({"source": source}), tmp_path / "source.fmu", documentation=False)
+    check = suite.same_model(path, gp.api.modal_network(model), "native", 20.0)
+    assert not check.passed
+    assert "the model has not" in check.what

@@ -1,6 +1,7 @@
 """Export of a system as an FMU of either kind."""
 
 import re
+import warnings
 from pathlib import Path
 
 from .._version import __version__
@@ -13,6 +14,7 @@ from .python_kind import export_python
 
 KINDS = ("native", "python")
 VERSIONS = ("2.0", "3.0")
+SOURCELESS = "the python kind has no gear mesh source: [source] is left out; the native kind has it"
 
 
 def model_identifier(name: str) -> str:
@@ -43,6 +45,8 @@ def export(
         raise InputError(f"fmi: version {fmi!r} is not available; use one of: {', '.join(VERSIONS)}")
     if kind == "python" and fmi != "2.0":
         raise InputError("fmi: pythonfmu makes FMUs of FMI 2.0 only; use the native kind for FMI 3.0")
+    if path.suffix.lower() != ".fmu" and not path.is_dir():
+        raise InputError(f"{path}: the name of an FMU ends in .fmu, or importers do not take it")
     if path.is_dir():
         raise InputError(f"{path}: is a folder; give the name of the FMU file to write")
     try:
@@ -60,6 +64,8 @@ def export(
             network = assemble(system).modal().viscous()
             more = {"fmi": fmi, "documentation": documentation, "band": band}
             return export_native(network, path, **settings, **more)  # type: ignore[arg-type]
+        if system.source is not None:
+            warnings.warn(SOURCELESS, stacklevel=3)
         return export_python(system, path, **settings)  # type: ignore[arg-type]
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror}); choose another place") from error

@@ -30,6 +30,8 @@ def _text(path: str | PathLike[str]) -> str:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(f"{path}: cannot be read ({reason}); check the path and its permissions") from None
+    if data.startswith(b"PK\x03\x04"):
+        raise InputError(f"{path}: this is a ZIP archive, such as an FMU; give the path of a model file (TOML)")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

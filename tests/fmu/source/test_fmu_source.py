@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from fmi3_driver import Fmu3
 from fmu_driver import OK, Fmu
+from fmu_states import Keeper
 from source_machine import (
     HARMONICS,
     MODELS,
@@ -299,6 +300,7 @@ def test_a_step_that_turns_on_without_limit_is_refused(fmu, amplitude):
     assert "smaller step" in fmu.messages[-1] or "without limit" in fmu.messages[-1]
     assert fmu.serialised() == before
     assert fmu.set({"mesh.speed": SPEED}) == OK
+    assert fmu.set_slopes({"mesh.speed": 0.0}) == OK
     assert fmu.step(0.0, 1e-3) == OK
 
 
@@ -309,3 +311,30 @@ def test_without_the_table_there_is_no_source(tmp_path):
     assert not {name for name in names if name.startswith((*NAMES, "mesh.speed", "mesh.teeth", "mesh.angle"))}
     again = gp.export_fmu(with_source().replace({"source": None}), tmp_path / "again.fmu")
     assert again.read_bytes() == plain.read_bytes()
+
+
+@pytest.mark.parametrize("turns", [10**6, -(10**12)])
+def test_a_phase_of_many_turns(fmu, turns):
+    """A phase p is the phase of its place in the circle; the doubles nearest to both differ by what is known here."""
+    pi = Fraction("3.14159265358979323846264338327950288419716939937510")
+    large = float(2 * pi * turns + Fraction(0.7))
+    small = float(Fraction(large) - 2 * pi * turns)
+    assert abs(small - 0.7) < 1e-3
+    ends = []
+    for phase in (large, small):
+        if ends:
+            assert fmu.call("fmi2Reset") == OK
+        fmu.start()
+        assert fmu.set({"mesh.harmonic_1.phase": phase}) == OK
+        assert fmu.step(0.0, 1e-3) == OK
+        ends.append(fmu.get(["bearing_1.force_uy", "casing.velocity_uy"]))
+    np.testing.assert_allclose(ends[0], ends[1], rtol=1e-11)
+
+
+def test_a_state_with_a_huge_angle_is_taken_back(fmu):
+    assert fmu.set({"mesh.angle": 1e18}) == OK  # before the simulation, as any state
+    fmu.start()
+    assert fmu.get(["mesh.angle"])[0] == 1e18
+    content = fmu.serialised()
+    assert Keeper(fmu).take(content) == OK, fmu.messages
+    assert fmu.serialised() == content

@@ -65,10 +65,9 @@ def test_only_a_native_fmu_has_a_source_to_silence(model):
 
 def test_the_python_kind_leaves_it_out_and_says_so(model, tmp_path):
     """The same FMU as without the table."""
-    made = [
-        gp.export_fmu(item, tmp_path / f"{i}.fmu", kind="python")
-        for i, item in enumerate((model, model.replace({"source": None})))
-    ]
+    with pytest.warns(UserWarning, match="no gear mesh source"):
+        made = [gp.export_fmu(model, tmp_path / "1.fmu", kind="python")]
+    made.append(gp.export_fmu(model.replace({"source": None}), tmp_path / "2.fmu", kind="python"))
     assert made[0].read_bytes() == made[1].read_bytes()
     with running(made[0]) as fmu:
         fmu.start()

@@ -47,7 +47,8 @@ _SOURCE = """
 (<code>{prefix}.speed</code>, rev/min, an input that may change), z the tooth count, h<sub>i</sub> the harmonic
 and k<sub>i</sub> the shaft orders of a sideband beside it. Amplitude a<sub>i</sub>, phase φ<sub>i</sub> and z
 are tunable. The tones are integrated exactly at constant speed, whatever the step size, and to rounding in a
-run-up with the speed linear over a step. With all amplitudes 0 the source is off.</p>
+run-up with the speed linear over a step. With all amplitudes 0 the source is off. A start at e ≠ 0 is a jump and
+rings for some tens of milliseconds: begin with a phase of −π/2, or raise the amplitude from 0.</p>
 """
 
 _INPUTS = {
@@ -58,8 +59,9 @@ set before <code>fmi2DoStep</code>, unless <code>fmi2SetRealInputDerivatives</co
 derivatives: then they vary <strong>linearly</strong> over the coming step, which is integrated exactly too. A
 derivative lasts one step. Held inputs lag by half a step: for a tone of frequency F and a step h the error is
 about π F h of the response (3 % at 1 kHz and 10 µs), linear ones leave about (π F h)<sup>2</sup>/3.</p>
-<p>Model exchange: the importer's solver sees the inputs as they are. The system is linear and stiff, with modes
-up to {highest} kHz: use an implicit solver, or co-simulation.</p>
+<p>Model exchange: the importer's solver sees the inputs as it sets them (some hold them over its internal steps).
+The system is linear and stiff, with modes up to {highest} kHz: use an implicit solver, or co-simulation, which is
+faster and more accurate.</p>
 """,
     "3.0": """
 <p>Steps are exact for the signal between communication points, at any step size from 1 µs to 1 s, fixed or not;
@@ -70,8 +72,9 @@ there are those at the end of the step. They then vary <strong>linearly</strong>
 integrated exactly too. After the step it is called again to read results. Held inputs lag by half a step: for a
 tone of frequency F and a step h the error is about π F h of the response (3 % at 1 kHz and 10 µs), linear ones
 leave about (π F h)<sup>2</sup>/3.</p>
-<p>Model exchange: the importer's solver sees the inputs as they are. The system is linear and stiff, with modes
-up to {highest} kHz: use an implicit solver, or co-simulation.</p>
+<p>Model exchange: the importer's solver sees the inputs as it sets them (some hold them over its internal steps).
+The system is linear and stiff, with modes up to {highest} kHz: use an implicit solver, or co-simulation, which is
+faster and more accurate.</p>
 """,
 }
 
@@ -81,7 +84,8 @@ _BEHAVIOUR = """
 components{more}. Set them before or in initialisation, between the steps of a co-simulation, or in the event
 mode of model exchange. The next step or output uses them, the power ratios included; positions and velocities
 stay continuous. Matrices are symmetric and must be positive semidefinite; damping ratios lie from 0 to below 1.
-What cannot be used is refused with a sentence in the log, and the old value stays. As exported, a step costs a
+What cannot be used is refused with a sentence in the log, and the old value stays; entries set one by one may
+make a matrix indefinite for a while, so that it is judged when it is next used. As exported, a step costs a
 few products a mode; after a change of joints or damping the whole system is discretised anew for every step
 size in use, and a step is a matrix product.</p>
 <h3>State and derivatives</h3>

@@ -5,12 +5,12 @@ from __future__ import annotations
 import tempfile
 import zipfile
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from ...errors import InputError, MissingExtraError
+from ...errors import GearpathError, InputError, MissingExtraError
 from ...network.assemble import assemble
 from ...network.modal import ModalNetwork
 from ...network.natural import natural_frequencies
@@ -21,7 +21,9 @@ from ...numerics.arrays import Real
 from ..checks import Check, Comparison, ValidationReport
 from ..conformance import Finding, Severity, check_conformance
 from ..export import export
+from ..native_table import native_table
 from ..simulation import running
+from ..variables import variable_table
 from . import chirp, measure, source, spectrum, tones
 from .exchange import exchanged, start_check
 
@@ -56,16 +58,48 @@ def validate(
     """
     kind = kind_of(path)
     network = assemble(system).modal().viscous()
-    limits = Limits()
-    message("standard: fmpy's validator")
-    checks = [standard_check(path)]
     message("standard: the rules that validators miss")
     findings = check_conformance(path)
-    checks.append(conformance_check(findings))
+    message("standard: fmpy's validator")
+    checks = [standard_check(path), conformance_check(findings)]
     advance(0.05)
-    changed = exchanged(network)
+    comparisons: list[Comparison] = []
+    conforms = not any(finding.severity == Severity.ERROR for finding in findings)
+    try:
+        checks.append(same_model(path, network, kind, band[0]))
+        if checks[-1].passed:
+            checks += _physics(path, system, network, kind, band, comparisons, message, advance)
+    except MissingExtraError:
+        raise
+    except Exception as error:
+        # of a file that breaks the standard anything can be expected; of another a refused call
+        if conforms and not _is_refusal(error):
+            raise
+        checks.append(Check("running the FMU", np.nan, 0.0, f"stopped: {type(error).__name__}: {error}"))
+    return ValidationReport(path, network.name, kind, tuple(checks), tuple(comparisons), findings=findings)
+
+
+def _is_refusal(error: Exception) -> bool:
+    """Whether the FMU refused a call, rather than that we failed."""
+    from fmpy.fmi1 import FMICallException
+
+    return isinstance(error, (FMICallException, GearpathError))
+
+
+def _physics(
+    path: Path,
+    system: System,
+    network: ModalNetwork,
+    kind: str,
+    band: tuple[float, float],
+    comparisons: list[Comparison],
+    message: Message,
+    advance: Callable[[float], None],
+) -> list[Check]:
+    """What the FMU computes, against the solver; adds the curves that were compared to `comparisons`."""
+    limits, changed = Limits(), exchanged(network)
     with running(path) as fmu:
-        checks.append(start_check(fmu.description, network))
+        checks = [start_check(fmu.description, network)]
         fmu.start(source.silenced(network, kind))
         message("frequency-domain outputs against the power flow")
         checks += spectrum.checks(fmu, network, changed, band, limits.spectrum)
@@ -87,10 +121,11 @@ def validate(
     if is_free(network):  # it drifts for ever
         message("no sine steady state: the machine is not held to the ground")
         advance(0.65)
-        return ValidationReport(path, network.name, kind, tuple(checks), findings=findings)
+        return checks
     message("sine steady state against the mobility synthesis")
-    steady, comparisons = _steady_checks(path, network, band, limits, lambda part: advance(0.65 * part))
-    return ValidationReport(path, network.name, kind, (*checks, *steady), tuple(comparisons), findings=findings)
+    steady, compared_curves = _steady_checks(path, network, band, limits, lambda part: advance(0.65 * part))
+    comparisons += compared_curves
+    return checks + steady
 
 
 def is_free(network: ModalNetwork) -> bool:
@@ -119,7 +154,10 @@ def standard_check(path: Path) -> Check:
         from fmpy.validation import validate_fmu
     except ImportError as error:
         raise MissingExtraError("fmpy", "fmu") from error
-    problems = validate_fmu(str(path))
+    try:
+        problems = validate_fmu(str(path))
+    except Exception as error:  # of a damaged file
+        problems = [f"{type(error).__name__}: {error}"]
     what = "problems found by fmpy's validator" + (": " + "; ".join(map(str, problems)) if problems else "")
     return Check("conformance to FMI, fmpy's validator", float(len(problems)), 0.0, what)
 
@@ -130,6 +168,27 @@ def conformance_check(findings: Sequence[Finding]) -> Check:
     warnings = sum(finding.severity == Severity.WARNING for finding in findings)
     what = f"errors by Gearpath's own rules, and {warnings} warnings"
     return Check("conformance to FMI, own rules", float(errors), 0.0, what)
+
+
+def same_model(path: Path, network: ModalNetwork, kind: str, frequency: float) -> Check:
+    """Whether the FMU has the variables of this very model: how many it lacks or has besides."""
+    import fmpy
+
+    description = fmpy.read_model_description(str(path), validate=False)
+    found = {variable.name for variable in description.modelVariables}
+    if kind == "native":
+        wanted = {variable.name for variable in native_table(network, frequency, description.fmiVersion)}
+    else:  # without the source, and with design parameters of its own
+        wanted = {variable.name for variable in variable_table(replace(network, source=None), frequency)}
+        found &= wanted
+    lacking, besides = sorted(wanted - found), sorted(found - wanted)
+    words = [
+        f"{what} {', '.join(names[:3])}{', ...' if len(names) > 3 else ''}"
+        for what, names in (("it lacks", lacking), ("it has, and the model has not,", besides))
+        if names
+    ]
+    told = "; ".join(["variables that differ", *words]) + (": it was exported from another model" if words else "")
+    return Check("exported from this model", float(len(lacking) + len(besides)), 0.0, told)
 
 
 def _kinds_check(
