@@ -26,7 +26,7 @@ def test_ten_lines_of_python_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     scope = {}
     exec(re.search(r"```python\n(.*?)```", README, re.DOTALL)[1], scope)
-    assert (tmp_path / "gearbox.fmu").is_file()
+    assert (tmp_path / "build" / "gearbox.fmu").is_file()
     assert abs(scope["result"]["bearing_1.force_uy"]).max() > 1.0
     assert scope["change"].sizes == {"frequency": 2000}
 
