@@ -50,7 +50,8 @@ class Dependencies:
             mask[network.components[name]] = True
             self.groups[f"{name}.modal_damping"] = mask & self.elastic
         self.damped: Mask = np.any([*self.groups.values(), np.zeros(N, bool)], axis=0)
-        self.touched = {joint.name: (joint.relative != 0).any(axis=0) for joint in network.joints}
+        self.acts: dict[str, Mask] = {joint.name: joint.relative != 0 for joint in network.joints}  # (rows, N)
+        self.touched = {name: acts.any(axis=0) for name, acts in self.acts.items()}
         self.joints = {joint.name: joint for joint in network.joints}
         self._forces: dict[tuple[str, int | None], _Found] = {}  # what was found for each, as it is asked for often
 
@@ -92,6 +93,13 @@ class Dependencies:
             self._accelerations(found, mode)
         return self._named(found)
 
+    def of_derivatives(self) -> Unknown:
+        """What the derivatives of all states depend on together."""
+        found = _Found(len(self.network.eigenvalues))
+        self._rates(found, np.ones_like(found.x))
+        self._accelerations(found, np.ones_like(found.x))
+        return self._named(found)
+
     def _rates(self, found: "_Found", modes: Mask) -> None:
         """q' of some modes."""
         found.v |= modes
@@ -131,7 +139,7 @@ class Dependencies:
                 found.inputs.add(load.name)
             found.parameters |= {name for name, mask in self.groups.items() if (terms & mask).any()}
         for joint in self.network.joints:
-            for dof in np.flatnonzero((joint.relative[:, modes] != 0).any(axis=1)):
+            for dof in np.flatnonzero((self.acts[joint.name] & modes).any(axis=1)):
                 self._force(found, joint, int(dof))
 
     def _entries(self, joint: JointRows, what: str, dof: int | None) -> set[str]:

@@ -304,7 +304,7 @@ def _matrices(network: ModalNetwork, system: tuple[str, ...]) -> Iterable[Variab
     ):
         if 0 in shape:
             continue
-        unknowns = map(structure.of_output, linear) if name in "CD" else map(structure.of_derivative, range(n))
+        unknowns = map(structure.of_output, linear) if name in "CD" else [structure.of_derivatives()]
         found = {parameter for unknown in unknowns for parameter in unknown.parameters}
         yield Variable(
             f"system.{name}",
