@@ -51,7 +51,7 @@ class Dependencies:
             self.groups[f"{name}.modal_damping"] = mask & self.elastic
         self.damped: Mask = np.any([*self.groups.values(), np.zeros(N, bool)], axis=0)
         self.acts: dict[str, Mask] = {joint.name: joint.relative != 0 for joint in network.joints}  # (rows, N)
-        self.touched = {name: acts.any(axis=0) for name, acts in self.acts.items()}
+        self.touched: dict[str, Mask] = {name: np.any(acts, axis=0) for name, acts in self.acts.items()}
         self.joints = {joint.name: joint for joint in network.joints}
         self._forces: dict[tuple[str, int | None], _Found] = {}  # what was found for each, as it is asked for often
 
