@@ -26,30 +26,53 @@ if TYPE_CHECKING:
         state_space,
         validate_fmu,
     )
+    from .joints.bearings import (
+        BallBearing,
+        BearingStack,
+        RollerBearing,
+        back_to_back,
+        catalogue_bearing,
+        designations,
+        face_to_face,
+        tandem,
+    )
 
 __all__ = [
     "AccuracyError",
+    "BallBearing",
+    "BearingStack",
     "GearpathError",
     "InputError",
     "MissingExtraError",
     "Model",
     "ModelError",
+    "RollerBearing",
     "__version__",
+    "back_to_back",
+    "catalogue_bearing",
+    "designations",
     "expected_power",
     "export_fmu",
+    "face_to_face",
     "frequency_response",
     "load",
     "natural_frequencies",
     "power_flow",
     "power_matrices",
     "state_space",
+    "tandem",
     "validate_fmu",
 ]
+_BEARINGS = {
+    *("BallBearing", "BearingStack", "RollerBearing", "back_to_back", "catalogue_bearing", "designations"),
+    *("face_to_face", "tandem"),
+}
 
 
 def __getattr__(name: str) -> Any:
     if name in __all__:
-        return getattr(import_module(".api", __name__), name)
+        module = ".joints.bearings" if name in _BEARINGS else ".api"
+        return getattr(import_module(module, __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
