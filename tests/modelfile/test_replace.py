@@ -103,7 +103,7 @@ def test_nothing(model):
         ("joints.fornt.stiffness", 1.0, "there is no \"fornt\" in joints; did you mean 'front'?"),
         ("joint.front.stiffness", 1.0, "there is no \"joint\" in the model; did you mean 'joints'?"),
         ("", 1.0, 'there is no "" in the model; known: name, dofs, frequency, materials, components, joints, '
-                  "excitation, actuators, sensors, source"),
+                  "excitation, actuators, sensors, operation, catalogue_file, source"),
         ("name.first", "a", 'there is no "first" in name; end the path before it'),
         ("components.train.shafts.input.disks.2.z", 0.1,
          'there is no "2" in components.train.shafts.input.disks; known: pinion, 0'),

@@ -176,4 +176,16 @@ class GearTrain:
                         levers[k, s] += row[5] if point.shaft == name else 0.0
         compliance = np.linalg.solve(spin.T @ M @ spin, levers.T)
         d = spin @ compliance @ np.linalg.inv(levers @ compliance)
-        return {name: MeshMotion(d[:, k], float(d[:, k] @ M @ d[:, k])) for k, name in enumerate(self.meshes)}
+        turned = np.eye(size)[-spins:] if spins else self._turned(size, grids, starts)
+        return {
+            name: MeshMotion(d[:, k], float(d[:, k] @ M @ d[:, k]), turned[k]) for k, name in enumerate(self.meshes)
+        }
+
+    def _turned(self, size: int, grids: Mapping[str, ShaftMesh], starts: Mapping[str, int]) -> Real:
+        """Rows of what the gears' own rz deforms each mesh, (meshes, n)."""
+        out = np.zeros((len(self.meshes), size))
+        for k, mesh in enumerate(self.meshes.values()):
+            for point, gear in self._gears(mesh):
+                block = slice(starts[point.shaft], starts[point.shaft] + grids[point.shaft].size)
+                out[k, block] += gear[5] * grids[point.shaft].motion(point.z)[5]
+        return out

@@ -37,3 +37,4 @@ class MeshMotion:
 
     displacement: Real  # d, (n,), m of spin per m of transmission error
     equivalent_mass: float  # m_e = d^T M d, kg
+    spin: Real  # (n,): what the gears' turning alone deforms the mesh, p = spin @ q; a tooth force F loads it by F spin

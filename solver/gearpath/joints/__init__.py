@@ -2,5 +2,6 @@
 
 from .beam_joint import beam_joint
 from .joint import Joint, Port
+from .mounting import Mounting, preloaded
 
-__all__ = ["Joint", "Port", "beam_joint"]
+__all__ = ["Joint", "Mounting", "Port", "beam_joint", "preloaded"]

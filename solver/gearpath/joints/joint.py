@@ -1,6 +1,12 @@
 """A joint: full symmetric stiffness and damping between two ports on its degrees of freedom (Eq. 13 and 14)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .mounting import Mounting
 
 Vector = tuple[float, float, float]
 Matrix = tuple[tuple[float, ...], ...]
@@ -41,3 +47,4 @@ class Joint:
     scalar: bool = False  # given as one number (a mount's axial stiffness)
     loss_factor: float = 0.0  # eta of (1 + i eta) K
     offset: Vector | None = None  # from the source's port to the receiver's, along which its motion is carried rigidly
+    mounting: Mounting | None = None  # of a rolling bearing, which decides the matrices

@@ -1,26 +1,39 @@
 """From a checked file to the `System` that the physics works on."""
 
+from pathlib import Path
+
 from ..components import Disk, GearTrain, Mesh, RigidBody, Section, Shaft
 from ..joints import Joint, Port, beam_joint
 from ..joints.joint import Matrix
 from ..network.records import MeshSource, Tone
-from ..network.system import Actuator, Component, MeshExcitation, PointExcitation, Sensor, System, Vector
+from ..network.system import (
+    Actuator,
+    Component,
+    MeshExcitation,
+    Operation,
+    PointExcitation,
+    Sensor,
+    System,
+    Vector,
+)
+from .bearing_tables import OperationTable
+from .build_bearings import build_mounting, catalogue_of
 from .build_structures import build_frame, build_material, build_plate, shear_coefficient_of
-from .joint_tables import BeamJointTable, JointTable
-from .references import beam_offset, find_gear, find_mesh, find_port, mesh_names
+from .joint_tables import BeamJointTable, BearingTable, JointTable
+from .references import beam_offset, find_driving_shaft, find_gear, find_mesh, find_port, mesh_names
 from .source_tables import SourceTable
 from .structure_tables import FrameTable, PlateTable
 from .tables import ActuatorTable, ComponentTable, ExcitationTable, FileTable, RigidBodyTable
 from .train_tables import GearTrainTable, MeshTable, SectionTable, ShaftTable
 
 
-def build_system(file: FileTable) -> System:
-    """The system of a file that has passed `check_file`."""
+def build_system(file: FileTable, folder: Path) -> System:
+    """The system of a file in `folder` that has passed `check_file`; rolling bearings are yet without stiffness."""
     return System(
         name=file.name,
         dofs=file.dofs,
         components={name: _component(file, table) for name, table in file.components.items()},
-        joints={name: _joint(file, table) for name, table in file.joints.items()},
+        joints={name: _joint(file, table, name, folder) for name, table in file.joints.items()},
         excitation=_excitation(file, file.excitation),
         actuators={name: Actuator(_port(file, table), table.dof, _at(table)) for name, table in file.actuators.items()},
         sensors={
@@ -35,6 +48,7 @@ def build_system(file: FileTable) -> System:
             if isinstance(table, (PlateTable, FrameTable)) and table.vectors is not None
         },
         source=None if file.source is None else _source(file, file.source),
+        operation=None if file.operation is None else _operation(file, file.operation),
     )
 
 
@@ -82,19 +96,41 @@ def _section(table: SectionTable) -> Section:
     return Section(table.length, outer, inner, outer_end, inner_end)
 
 
-def _joint(file: FileTable, table: JointTable) -> Joint:
+def _operation(file: FileTable, table: OperationTable) -> Operation:
+    component, shaft = find_driving_shaft(file, table.shaft)
+    return Operation(component, table.torque, shaft, table.speed)
+
+
+def _joint(file: FileTable, table: JointTable, name: str, folder: Path) -> Joint:
     first, second = (find_port(file, text, "between") for text in table.between)
     if isinstance(table, BeamJointTable):
         return _beam_joint(file, table, (first, second))
-    stiffness = _matrix(table.stiffness)
+    mounting = None
+    if isinstance(table, BearingTable):
+        mounting = build_mounting(table, file.dofs, f"joints.{name}", catalogue_of(file, folder))
+    stiffness = _matrix(table.stiffness) if table.stiffness is not None else _nothing(len(file.dofs))
     if table.damping is not None:
         damping = _matrix(table.damping)
     else:
         time = table.damping_time or 0.0
         damping = tuple(tuple(time * value for value in row) for row in stiffness)
-    scalar = not isinstance(table.stiffness, tuple)
+    scalar = isinstance(table.stiffness, float)
     dofs = ("uy",) if scalar else file.dofs
-    return Joint(table.kind, (first, second), dofs, stiffness, damping, table.at, scalar, table.loss_factor)
+    return Joint(
+        table.kind,
+        (first, second),
+        dofs,
+        stiffness,
+        damping,
+        table.at,
+        scalar,
+        table.loss_factor,
+        mounting=mounting,
+    )
+
+
+def _nothing(size: int) -> Matrix:
+    return ((0.0,) * size,) * size
 
 
 def _beam_joint(file: FileTable, table: BeamJointTable, between: tuple[Port, Port]) -> Joint:

@@ -7,10 +7,17 @@ from ..errors import ModelError
 from .hints import hint
 from .wording import dotted, plain, show
 
+_OF_ROLLING_BEARINGS = ("load", "displacement", "preload", "mirrored", "arrangement", "distance")
+
 # Setting one of these keys replaces the others, which say the same in another way.
 EXCLUSIVE = {
     "damping": ("damping_time",),
     "damping_time": ("damping",),
+    "stiffness": ("geometry", "catalogue", *_OF_ROLLING_BEARINGS),
+    "geometry": ("stiffness", "catalogue"),
+    "catalogue": ("stiffness", "geometry"),
+    "load": ("displacement",),
+    "displacement": ("load",),
     "sections": ("length", "diameter"),
     "length": ("sections",),
     "diameter": ("sections",),

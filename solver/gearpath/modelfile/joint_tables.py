@@ -5,13 +5,16 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from ..joints.joint import Matrix, Vector
+from .bearing_tables import ByDof, GeometryTable, Loads
 from .forms import Impedance
 from .numbers import Quantity, Row
 from .table import Table
-from .words import Pair, Text
+from .words import Choice, Flag, Pair, Text
 
 _PLACE = Row("place", Quantity("coordinate", "m", plausible=(-1e3, 1e3), slip="did you mean m, not mm?"), 3)
 _LOSS = Quantity("loss factor eta of (1 + i eta) K", at_least=0.0, at_most=2.0)
+_STIFFNESS = Impedance("stiffness", "N/m")
+ARRANGEMENTS = ("back_to_back", "face_to_face", "tandem")
 _ENDS = Pair("two ends, source and receiver", ("gear_train.input@0.0", "casing"))
 
 
@@ -21,12 +24,12 @@ def _diameter(description: str, **limits: float) -> Quantity:
 
 
 class MatrixJointTable(Table):
-    """A bearing or mount, massless, with stiffness and damping."""
+    """A joint without mass, with stiffness and damping."""
 
-    kind: Annotated[Literal["bearing", "mount"], Field(description="Kind of joint")]
+    kind: Annotated[str, Field(description="Kind of joint")]
     between: Annotated[tuple[str, str], _ENDS]
     at: Annotated[Vector | None, _PLACE.named("place of the joint where neither of its ends gives it")] = None
-    stiffness: Annotated[float | Matrix, Impedance("stiffness", "N/m")]
+    stiffness: Annotated[float | Matrix | None, _STIFFNESS] = None
     damping: Annotated[float | Matrix | None, Impedance("damping", "N s/m")] = None
     damping_time: Annotated[
         float | None,
@@ -39,6 +42,33 @@ class MatrixJointTable(Table):
         ),
     ] = None
     loss_factor: Annotated[float, _LOSS] = 0.0
+
+
+class MountTable(MatrixJointTable):
+    """A mount."""
+
+    kind: Annotated[Literal["mount"], Field(description="Mount")]
+    stiffness: Annotated[float | Matrix, _STIFFNESS]
+
+
+class BearingTable(MatrixJointTable):
+    """A bearing, by its matrices, or a rolling bearing by its geometry; the first of `between` is its inner ring."""
+
+    kind: Annotated[Literal["bearing"], Field(description="Bearing")]
+    geometry: Annotated[
+        GeometryTable | None, Field(description="Geometry of a rolling bearing, instead of its stiffness")
+    ] = None
+    catalogue: Annotated[str, Text("designation of a rolling bearing, instead of its geometry", "7210B-like")] = ""
+    load: Annotated[Loads | None, ByDof("load on the inner ring, the rest being held", "N or N m")] = None
+    displacement: Annotated[
+        Loads | None, ByDof("displacement of the inner ring relative to the outer one, the rest being 0", "m or rad")
+    ] = None
+    preload: Annotated[
+        float, Quantity("axial force with which a row is pressed together before it is loaded", "N", at_least=0.0)
+    ] = 0.0
+    mirrored: Annotated[bool, Flag("whether the bearing faces the other way, its contact angle negative")] = False
+    arrangement: Annotated[str, Choice("arrangement of two rows", ARRANGEMENTS)] = ""
+    distance: Annotated[float | None, Quantity("distance of two rows", "m", above=0.0)] = None
 
 
 class BeamJointTable(Table):
@@ -59,5 +89,5 @@ class BeamJointTable(Table):
     loss_factor: Annotated[float, _LOSS] = 0.0
 
 
-JointTable = MatrixJointTable | BeamJointTable
+JointTable = BearingTable | MountTable | BeamJointTable
 JOINTS = ("bearing", "mount", "beam_joint")

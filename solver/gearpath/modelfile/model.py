@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
-from ..errors import ModelError
+from ..errors import InputError, ModelError
+from ..network.operation import at_operating_point
 from ..network.system import System
 from ..numerics.arrays import Real
 from .build import build_system
@@ -35,7 +37,7 @@ class Model:
         try:
             copied = plain(data)
             table = FileTable.model_validate(copied)
-            check_file(table)
+            check_file(table, _folder(file))
         except ValidationError as error:
             raise first_problem(error, copied, file) from None
         except ModelError as error:
@@ -65,8 +67,16 @@ class Model:
 
     @cached_property
     def system(self) -> System:
-        """Components, joints and excitation as plain dataclasses; `eval` of its `repr` gives it again."""
-        return build_system(self.table)
+        """Components, joints and excitation as plain dataclasses; `eval` of its `repr` gives it again.
+
+        Rolling bearings have the stiffness of their operating point. Raises ModelError where there is none.
+        """
+        try:
+            return at_operating_point(build_system(self.table, _folder(self.file)))
+        except InputError as error:
+            key, _, text = str(error).partition(": ")
+            problem, _, remedy = text.partition("; ")
+            raise ModelError(key, problem, remedy, file=self.file) from None
 
     def to_dict(self) -> dict[str, Any]:
         """What the file says, as a plain dict that `from_dict` accepts."""
@@ -90,6 +100,10 @@ class Model:
 
     def __hash__(self) -> int:
         return hash((self.name, self.dofs, *self.table.joints))
+
+
+def _folder(file: str | None) -> Path:
+    return Path(file).parent if file else Path()
 
 
 def load(path: str | PathLike[str]) -> Model:

@@ -17,6 +17,8 @@ def first_problem(error: ValidationError, data: object, file: str | None) -> Mod
     location = list(found["loc"])
     if location[:1] in (["components"], ["joints"]) and len(location) > 2:
         del location[2]  # pydantic puts the kind there
+    if "geometry" in location[:-1]:
+        del location[location.index("geometry") + 1]  # and the type here
     if location[-1:] == ["[key]"]:
         del location[-1]
     key = dotted([*_named(location, data), *context.get("key", ())]) or "the file"

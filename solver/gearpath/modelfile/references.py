@@ -167,3 +167,24 @@ def beam_offset(file: FileTable, table: BeamJointTable) -> tuple[float, float, f
     assert start is not None
     assert end is not None
     return (end[0] - start[0], end[1] - start[1], end[2] - start[2])
+
+
+def find_driving_shaft(file: FileTable, text: str) -> tuple[str, str | None]:
+    """(gear train, shaft) where the torque of the operation enters; no shaft where `text` names none."""
+    trains = [name for name, table in file.components.items() if isinstance(table, GearTrainTable) and table.meshes]
+    if text:
+        shafts = [f"{name}.{shaft}" for name in trains for shaft in _trained(file, name).shafts]
+        find("shaft", text, shafts, "operation.shaft")
+        component, shaft = text.split(".")
+        return component, shaft
+    if len(trains) != 1:
+        problem = "there is no gear mesh that could carry a torque" if not trains else "is missing"
+        remedy = "leave the table operation out" if not trains else f"name a shaft of {' or '.join(map(show, trains))}"
+        raise ModelError("operation.shaft" if trains else "operation", problem, remedy)
+    return trains[0], None
+
+
+def _trained(file: FileTable, name: str) -> GearTrainTable:
+    table = file.components[name]
+    assert isinstance(table, GearTrainTable)
+    return table

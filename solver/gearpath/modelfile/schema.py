@@ -10,11 +10,12 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 # Of these keys exactly one set must be given.
 _ONE_OF = {
     "ShaftTable": (("length", "diameter"), ("sections",)),
+    "BearingTable": (("stiffness",), ("geometry",), ("catalogue",)),
     "ExcitationTable": (("mesh",), ("point", "dof")),
 }
 _NAMED = ("properties", "patternProperties", "$defs", "default")
 _ANY_OF = {"SourceTable": (("harmonics",), ("sidebands",))}  # at least one
-_NOT_BOTH = {"MatrixJointTable": ("damping", "damping_time")}
+_NOT_BOTH = {"BearingTable": ("damping", "damping_time"), "MountTable": ("damping", "damping_time")}
 
 
 def json_schema() -> dict[str, Any]:

@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Field
 from ..components.dofs import DOFS
 from ..joints.joint import Vector
 from ..numerics.arrays import Real
+from .bearing_tables import OperationTable
 from .forms import Dofs, Spot
 from .hints import hint
 from .joint_tables import JOINTS, JointTable
@@ -140,4 +141,10 @@ class FileTable(Table):
     sensors: Annotated[
         Named[SensorTable], Field(description="Additional outputs by name", default_factory=dict)
     ]
+    operation: Annotated[
+        OperationTable | None, Field(description="Steady torque that loads the rolling bearings")
+    ] = None
+    catalogue_file: Annotated[
+        str, Text("file of further rolling bearings, beside the model file", "my_bearings.toml")
+    ] = ""
     source: Annotated[SourceTable | None, Field(description="A gear mesh source inside native FMUs")] = None

@@ -73,6 +73,21 @@ class Choice(Leaf):
 
 
 @dataclass(frozen=True)
+class Flag(Leaf):
+    """True or false."""
+
+    def check(self, value: object) -> bool:
+        """The truth value."""
+        if not isinstance(value, bool):
+            raise wrong(f"{show(value)} is neither true nor false", "write true or false, without quotes")
+        return value
+
+    def schema(self) -> dict[str, Any]:
+        """A truth value."""
+        return {"type": "boolean"}
+
+
+@dataclass(frozen=True)
 class Pair(Leaf):
     """Two references in the order source, receiver."""
 

@@ -4,6 +4,7 @@ The same records describe the network in the components' physical coordinates (f
 their modal coordinates (for the mobility synthesis, the time twin and the FMUs): only the width n of the rows differs.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -84,3 +85,12 @@ class MeshSource:
     speed: float  # rev/min, start value of the input
     teeth: int  # of the gear on the driving shaft
     tones: tuple[Tone, ...]
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """Matrices of joints over the torque through the machine, linear between the operating points."""
+
+    torques: Real  # (T,), N m, increasing
+    stiffness: Mapping[str, Real]  # joint -> (T, d, d)
+    damping: Mapping[str, Real]  # joint -> (T, d, d), of joints whose damping follows their stiffness

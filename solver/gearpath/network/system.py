@@ -56,6 +56,16 @@ class Sensor:
 
 
 @dataclass(frozen=True)
+class Operation:
+    """A steady torque through a gear train, at which its rolling bearings work."""
+
+    component: str  # the gear train
+    torque: float  # N m, on the driving shaft, in the sense that presses the teeth together
+    shaft: str | None = None  # where it enters; None: the first gear's of the first mesh
+    speed: float | None = None  # of that shaft, rev/min: only to warn of centrifugal forces
+
+
+@dataclass(frozen=True)
 class System:
     """A machine; names of components, joints and meshes are unique."""
 
@@ -70,3 +80,4 @@ class System:
     band: float = 5000.0  # Hz, up to where reduced components must be exact
     vectors: Mapping[str, int] = field(default_factory=dict)  # interior vectors of reduced components, where chosen
     source: MeshSource | None = None  # of native FMUs only
+    operation: Operation | None = None

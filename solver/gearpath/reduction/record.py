@@ -83,7 +83,7 @@ def reduced_structure(structure: Structure, reduction: Reduction) -> Structure:
     def motion(item: MeshMotion) -> MeshMotion:
         push = T.T @ (M @ item.displacement)
         d = scipy.linalg.solve(reduction.mass, push, assume_a="pos")
-        return MeshMotion(d, float(d @ push))
+        return MeshMotion(d, float(d @ push), item.spin @ T)
 
     return Structure(
         mass=reduction.mass,

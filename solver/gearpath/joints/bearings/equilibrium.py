@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...errors import AccuracyError, InputError
 from ...numerics.arrays import Real
+from ...numerics.convex import Look, Minimum, minimise
 from .checks import DOFS, displacements, finite
 from .rolling import Contacts
 
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
 
 TOLERANCE, ENOUGH = 1e-11, 1e-9  # of the load: what is aimed at, and what must be reached
 _ROUNDING = 1e-14  # of the sum of the element loads
-_STEPS = 200
-_LEAST, _STUCK = 1e-13, 1e12  # damping: what keeps unsupported directions without load in place, and where to give up
 _FAR = 0.2  # of the lever: a displacement as large as this is a bearing that comes apart
 
 
@@ -66,7 +65,12 @@ def settle(bearing: RollingBearing, load: Mapping[str, float], start: ArrayLike 
         raise InputError(
             "load: zero leaves a bearing without preload where it is; name at least one force or moment (N, N m)"
         )
-    q, iterations, residual = _minimise(bearing, q, wanted, np.flatnonzero(free), size, strength)
+    q, solves, residual = _minimise(bearing, q, wanted, np.flatnonzero(free), size, strength)
+    return state_at(bearing, q, solves, residual)
+
+
+def state_at(bearing: RollingBearing, q: Real, iterations: int = 0, residual: float = 0.0) -> Equilibrium:
+    """What a bearing carries at a displacement (6,), however that was found."""
     contacts = bearing.contacts(q)
     return Equilibrium(
         displacement=q,
@@ -99,44 +103,38 @@ def _given(load: Mapping[str, float]) -> tuple[NDArray[np.bool_], Real]:
 
 def _minimise(
     bearing: RollingBearing, q: Real, wanted: Real, free: NDArray[np.intp], size: Real, strength: float
-) -> tuple[Real, int, float]:
-    """Newton's method with Levenberg's damping on U - F q, rotations scaled by the lever; U is convex.
-
-    Damped steps must reduce the energy or the residual. The damping begins at the stiffness that the bearing would have
-    with one element under the whole load, and vanishes as steps succeed.
-    """
+) -> Minimum:
+    """The minimum of U - F q, rotations scaled by the lever, in units of what one element has under the whole load."""
     constant, exponent = bearing.scale
     guess = (strength / constant) ** (1.0 / exponent)
-    unit = strength / guess
-    s, inside, unity = size[free], np.ix_(free, free), np.eye(len(free))
+    s = size[free] * np.sqrt(strength / guess)
+    inside = np.ix_(free, free)
 
-    def look(x: Real) -> tuple[float, Real, float]:
-        energy, load = bearing._potential(x[None, :5])
-        rest = (wanted[free] - load[0, free]) / s
-        return float(energy[0]) - float(wanted @ x), rest, float(np.abs(rest).max()) / strength
+    def at(x: Real) -> Real:
+        moved = q.copy()
+        moved[free] = x / s
+        return moved
 
-    damping, solves = 1.0, 0
-    energy, rest, residual = look(q)
-    while solves < _STEPS and residual > TOLERANCE:
-        K = bearing._stiffness(q[None, :5])[0][inside] / np.outer(s, s)
-        while damping < _STUCK:
-            moved = q.copy()
-            moved[free] += np.linalg.solve(K + damping * unit * unity, rest) / s
-            new, solves = look(moved), solves + 1
-            slack = 1e-14 * (abs(energy) + strength * guess)
-            if new[0] < energy - slack or (new[0] <= energy + slack and new[2] < residual):
-                break
-            damping *= 8.0
-        else:
-            break
-        q, (energy, rest, residual) = moved, new
-        damping = max(0.02 * damping, _LEAST)
-        if np.abs(q[:5] * size).max() > _FAR * bearing.lever:
-            break
+    def look(x: Real) -> Look:
+        moved = at(x)
+        energy, load = bearing._potential(moved[None, :5])
+        rest = wanted[free] - load[0, free]
+        residual = float(np.abs(rest / size[free]).max()) / strength
+        return Look(float(energy[0]) - float(wanted @ moved), rest / s, residual)
+
+    found = minimise(
+        look,
+        lambda x: bearing._stiffness(at(x)[None, :5])[0][inside] / np.outer(s, s),
+        q[free] * s,
+        tolerance=TOLERANCE,
+        slack=1e-14 * strength * guess,
+        lost=lambda x: bool(np.abs(at(x)[:5] * size).max() > _FAR * bearing.lever),
+    )
+    displacement = at(found.place)
     # internal forces far above the load leave no more digits
-    if residual <= max(ENOUGH, _ROUNDING * float(bearing.contacts(q).load.sum()) / strength):
-        return q, solves, residual
-    raise _failure(bearing, q, wanted, size, residual)
+    if found.residual <= max(ENOUGH, _ROUNDING * float(bearing.contacts(displacement).load.sum()) / strength):
+        return found._replace(place=displacement)
+    raise _failure(bearing, displacement, wanted, size, found.residual)
 
 
 def _failure(bearing: RollingBearing, q: Real, wanted: Real, size: Real, residual: float) -> Exception:

@@ -1,6 +1,9 @@
 """Rules between several keys of a model file; every breach is a ModelError."""
 
+from pathlib import Path
+
 from ..tables import FileTable
+from .bearings import check_operation
 from .components import check_components
 from .extras import check_actuators, check_excitation, check_frequency, check_sensors
 from .joints import check_joints
@@ -8,11 +11,8 @@ from .names import check_names
 from .network import check_network
 from .source import check_source
 
-_RULES = (
-    check_frequency,
-    check_names,
-    check_components,
-    check_joints,
+_BEFORE = (check_frequency, check_names, check_components, check_operation)
+_AFTER = (
     check_network,
     check_excitation,
     check_actuators,
@@ -21,9 +21,12 @@ _RULES = (
 )
 
 
-def check_file(file: FileTable) -> None:
-    """Apply every rule, in this order."""
-    for rule in _RULES:
+def check_file(file: FileTable, folder: Path) -> None:
+    """Apply every rule, in this order; `folder` is where the model file is."""
+    for rule in _BEFORE:
+        rule(file)
+    check_joints(file, folder)
+    for rule in _AFTER:
         rule(file)
 
 

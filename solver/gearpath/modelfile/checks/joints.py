@@ -1,15 +1,18 @@
 """Rules of joints: their ends, their place, their stiffness and damping."""
 
 from math import dist, hypot
+from pathlib import Path
 
 from ...errors import ModelError
 from ...joints import Port
+from ..build_bearings import catalogue_of
 from ..build_structures import build_plate
-from ..joint_tables import BeamJointTable, JointTable, MatrixJointTable
+from ..joint_tables import BeamJointTable, BearingTable, JointTable, MatrixJointTable
 from ..references import beam_offset, find, find_port, place_of
 from ..structure_tables import PlateTable
 from ..tables import FileTable
 from ..wording import show
+from .bearings import check_bearing
 from .matrices import check_matrix
 from .structures import as_model_error
 
@@ -18,8 +21,9 @@ _CARRIED = ((("rz", "uy"), ("ry", "uz")), (("rz", "ux"), ("rx", "uz")), (("ry", 
 _MEETING = 1e-6  # two stations that a joint connects are one place, m
 
 
-def check_joints(file: FileTable) -> None:
-    """Check every joint."""
+def check_joints(file: FileTable, folder: Path) -> None:
+    """Check every joint; `folder` is where the model file is."""
+    catalogue_file = catalogue_of(file, folder)
     for name, joint in file.joints.items():
         key = f"joints.{name}"
         ends = tuple(find_port(file, text, f"{key}.between") for text in joint.between)
@@ -29,6 +33,8 @@ def check_joints(file: FileTable) -> None:
             _check_beam(file, joint, ends, key)
         else:
             _check_meeting(file, joint, ends, key)
+            if isinstance(joint, BearingTable):
+                check_bearing(file, joint, key, catalogue_file)
             _check_impedance(file, joint, key)
 
 
@@ -118,7 +124,8 @@ def _check_impedance(file: FileTable, joint: MatrixJointTable, key: str) -> None
             f"{joint.damping_time:g} s is given beside damping",
             "give either damping or damping_time",
         )
-    if joint.damping is not None and isinstance(joint.damping, tuple) != isinstance(joint.stiffness, tuple):
+    given = joint.damping is not None and joint.stiffness is not None
+    if given and isinstance(joint.damping, tuple) != isinstance(joint.stiffness, tuple):
         raise ModelError(
             f"{key}.damping",
             f"{_form(joint.damping)} is given for a stiffness that is {_form(joint.stiffness)}",
@@ -127,7 +134,7 @@ def _check_impedance(file: FileTable, joint: MatrixJointTable, key: str) -> None
     for part, value in (("stiffness", joint.stiffness), ("damping", joint.damping)):
         if isinstance(value, tuple):
             check_matrix(value, file.dofs, f"{key}.{part}")
-    if not isinstance(joint.stiffness, tuple) and "uy" not in file.dofs:
+    if isinstance(joint.stiffness, float) and "uy" not in file.dofs:
         raise ModelError(
             f"{key}.stiffness",
             f"{joint.stiffness:g} N/m is one number, which acts along uy, but uy is not among dofs",

@@ -16,6 +16,7 @@ RESERVED = (
     "sensors",
     "time",
     "excitation",
+    "operation",
 )
 
 
