@@ -21,9 +21,11 @@ if TYPE_CHECKING:
         frequency_response,
         load,
         natural_frequencies,
+        operating_point,
         power_flow,
         power_matrices,
         state_space,
+        torque_sweep,
         validate_fmu,
     )
     from .joints.bearings import (
@@ -57,10 +59,12 @@ __all__ = [
     "frequency_response",
     "load",
     "natural_frequencies",
+    "operating_point",
     "power_flow",
     "power_matrices",
     "state_space",
     "tandem",
+    "torque_sweep",
     "validate_fmu",
 ]
 _BEARINGS = {

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,9 @@ from .modelfile import Model, load
 from .network.assemble import assemble
 from .network.modal import ModalNetwork
 from .network.natural import natural_frequencies as _natural_frequencies
+from .network.operation import operating_point as _operating_point
+from .network.operation import schedule as _schedule
+from .network.records import Schedule
 from .network.system import MeshExcitation
 from .numerics.arrays import Real
 
@@ -20,6 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from .fmu.checks import ValidationReport
+    from .joints.bearings import Equilibrium
 
 __all__ = [
     "Model",
@@ -30,9 +35,11 @@ __all__ = [
     "load",
     "modal_network",
     "natural_frequencies",
+    "operating_point",
     "power_flow",
     "power_matrices",
     "state_space",
+    "torque_sweep",
     "validate_fmu",
 ]
 
@@ -122,6 +129,37 @@ def power_matrices(
     return labelled_power_matrices(modal_network(model), f, inputs, progress)
 
 
+def operating_point(model: Model) -> dict[str, Equilibrium]:
+    """State of every rolling bearing that the model gives by geometry or catalogue, by the joint's name.
+
+    Displacement of the inner ring (6,), the load that it carries (6,), stiffness (6, 6), loads and contact angles of the
+    rolling elements, linear solves and residual, notes where the theory stops; SI units, degrees of freedom ux to rz.
+    With `[operation]` from the static equilibrium of the whole machine. Raises ModelError for a load that the bearings
+    cannot carry.
+    """
+    return _operating_point(model.system)
+
+
+def torque_sweep(
+    model: Model,
+    torques: ArrayLike,
+    frequencies_hz: ArrayLike | None = None,
+    *,
+    progress: Progress = lambda _: None,
+) -> xr.Dataset:
+    """Power flow over the torque through the gears: alpha(torque, frequency).
+
+    At each torque (N m, on the shaft of `[operation]`) every bearing given by geometry or catalogue has the stiffness of
+    its operating point. `alpha`, `alpha_force`, `alpha_moment`, `input_power`, `transmitted_power` (W) over `torque`
+    and `frequency`, `path_alpha` also over `path`, and `stiffness.JOINT` over `torque`, `dof`, `dof_2`. Raises
+    InputError for a model without operation and for torques that the bearings cannot carry.
+    """
+    from .results.torque import labelled_torque_sweep
+
+    f = model.frequencies() if frequencies_hz is None else frequencies_hz
+    return labelled_torque_sweep(model.system, torques, f, amplitude(model), progress)
+
+
 def state_space(model: Model) -> control.StateSpace:
     """The time twin as a `control.StateSpace`: inputs, outputs and states by name, a dot written as a slash.
 
@@ -144,21 +182,44 @@ def natural_frequencies(model: Model) -> Real:
 
 
 def export_fmu(
-    model: Model, path: str | Path, fmi: str = "2.0", kind: str = "native", *, documentation: bool = True
+    model: Model,
+    path: str | Path,
+    fmi: str = "2.0",
+    kind: str = "native",
+    *,
+    documentation: bool = True,
+    schedule: Sequence[float] | None = None,
 ) -> Path:
     """Write the model as an FMU and return its path.
 
     kind "native" runs without Python on every platform; kind "python" holds the whole solver, with the design
     parameters as well, and needs Python with numpy and scipy in the host. `documentation` adds plots of this very model
-    and reference results to the native kind. Raises InputError for an unknown kind or
-    version and for a path that cannot be written.
+    and reference results to the native kind. `schedule` are at least two torques (N m), increasing: a native FMU has the
+    input `operation.torque`, between whose points the stiffness of the bearings that follow the operation is
+    interpolated; the model's own torque is one of them where it lies between. Raises InputError for an unknown kind or
+    version, torques that cannot be used, and a path that cannot be written.
     """
     from .fmu.export import export
 
     band = (model.frequency.start, model.frequency.stop)
     return export(
-        model.system, Path(path), fmi=fmi, kind=kind, frequency=band[0], documentation=documentation, band=band
+        model.system,
+        Path(path),
+        fmi=fmi,
+        kind=kind,
+        frequency=band[0],
+        documentation=documentation,
+        band=band,
+        schedule=None if schedule is None else _scheduled(model, [float(torque) for torque in schedule]),
     )
+
+
+def _scheduled(model: Model, torques: list[float]) -> Schedule:
+    """Matrices over the torque, which begin at the model's own."""
+    operation = model.system.operation
+    if operation is not None and torques and torques[0] < operation.torque < torques[-1]:
+        torques = torques if operation.torque in torques else sorted([*torques, operation.torque])
+    return replace(_schedule(model.system, torques), start=None if operation is None else operation.torque)
 
 
 def validate_fmu(
@@ -175,7 +236,15 @@ def validate_fmu(
     `message` is told what begins and `advance` which part of the work was done. Raises InputError where the file is
     not an FMU.
     """
-    from .fmu.validation import validate
+    from .fmu.validation import torques_of, validate
 
-    frequency = model.frequency
-    return validate(Path(path), model.system, (frequency.start, frequency.stop), message=message, advance=advance)
+    frequency, torques = model.frequency, torques_of(Path(path))
+    known = len(torques) > 0 and model.system.operation is not None
+    return validate(
+        Path(path),
+        model.system,
+        (frequency.start, frequency.stop),
+        scheduled=_scheduled(model, torques) if known else None,
+        message=message,
+        advance=advance,
+    )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..numerics.arrays import Real
-from .records import JointRows, Load, MeshSource, Output
+from .records import JointRows, Load, MeshSource, Output, Schedule
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,7 @@ class ModalNetwork:
     band: float = np.inf  # Hz, up to where components that were reduced to their band are exact
     loss_frequency: float = 1000.0  # Hz, where loss factors of joints and their viscous equivalents agree
     source: MeshSource | None = None  # of FMUs only: everything else takes the excitation as an input
+    schedule: Schedule | None = None  # of FMUs only: everything else takes the joints as they are
 
     @property
     def damping(self) -> Real:
@@ -64,7 +65,30 @@ class ModalNetwork:
         joints = tuple(
             replace(j, damping=j.damping + j.loss_factor / w * j.stiffness, loss_factor=0.0) for j in self.joints
         )
-        return replace(self, modal_damping=ratios, joints=joints, loss_factors={})
+        return replace(
+            self, modal_damping=ratios, joints=joints, loss_factors={}, schedule=self._viscous_schedule(1.0 / w)
+        )
+
+    def _viscous_schedule(self, time: float) -> Schedule | None:
+        """The schedule where a loss factor eta makes C + eta time K of a joint: C then follows K."""
+        if self.schedule is None:
+            return None
+        damping = dict(self.schedule.damping)
+        for joint in self.joints:
+            K = self.schedule.stiffness.get(joint.name)
+            if K is not None and joint.loss_factor:
+                damping[joint.name] = damping.get(joint.name, joint.damping) + joint.loss_factor * time * K
+        return replace(self.schedule, damping=damping)
+
+    def at_torque(self, torque: float) -> "ModalNetwork":
+        """The network with the matrices of its schedule at a torque (N m); the components stay solved."""
+        if self.schedule is None:
+            return self
+        K, C = self.schedule.at(torque)
+        joints = tuple(
+            replace(j, stiffness=K.get(j.name, j.stiffness), damping=C.get(j.name, j.damping)) for j in self.joints
+        )
+        return replace(self, joints=joints)
 
     @property
     def relative(self) -> Real:

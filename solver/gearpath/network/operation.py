@@ -5,25 +5,20 @@ the energies U_b of their relative motion q_b = B_b x (inner ring minus outer ri
 
     min over x of   x^T K x / 2 - f^T x + sum U_b(B_b x)
 
-is convex. Contact is unilateral: K alone need not hold the shafts. Its solutions lie in the span V of A^-1 f and
-A^-1 B^T, A = K + B^T K_0 B with any stiffness K_0 in place of the bearings, so that Newton's method works on as many
-coordinates as the bearings have degrees of freedom; this is exact. Motions that meet no stiffness at all (all gears
-rolling, a free-free machine) are held: the machine then takes the load by its inertia.
+is convex. Contact is unilateral: K alone need not hold the shafts. Newton's method works in the few coordinates of
+`statics`.
 """
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import scipy.sparse
-import scipy.sparse.linalg
 
-from ..components import DOFS, GearTrain
-from ..components.mean_load import mean_load
+from ..components import DOFS
 from ..errors import AccuracyError, InputError
 from ..joints import Joint
 from ..joints.bearings.equilibrium import Equilibrium, state_at
@@ -31,14 +26,12 @@ from ..joints.bearings.rolling import Contacts, RollingBearing
 from ..joints.mounting import own_state
 from ..numerics.arrays import Real
 from ..numerics.convex import Look, minimise
-from .channels import joint_rows
-from .ports import Ports
-from .records import JointRows, Schedule
+from .records import Schedule
+from .statics import load_of, statics
 from .system import Operation, System
 
 TOLERANCE, ENOUGH = 1e-12, 1e-9  # of the load, in the energy norm of A
 _FAR = 0.2  # of a bearing's lever: it comes apart
-_HELD, _SAME = 1e-12, 1e-14  # relative stiffness of what nothing holds; directions of V that are the same
 
 
 def operating_point(system: System) -> dict[str, Equilibrium]:
@@ -128,48 +121,39 @@ def _bearing(system: System, name: str) -> RollingBearing:
     return bearing
 
 
-@dataclass(frozen=True)
-class _Statics:
-    """The machine in a few coordinates z, x = V z with V^T A V = 1."""
-
-    stiffness: Real  # (m, m) V^T K V
-    load: Real  # (m,) V^T f
-    motions: Mapping[str, Real]  # bearing -> (6, m): its relative motion
-
-
 def _settle(system: System, names: Sequence[str], operation: Operation) -> dict[str, Equilibrium]:
     """The states of these bearings under the mean load, by Newton's method."""
-    statics = _statics(system, names, operation)
     bearings = {name: _bearing(system, name) for name in names}
+    machine = statics(system, bearings, operation)
 
     def carried(z: Real) -> tuple[float, Real]:
         energy, load = 0.0, np.zeros(len(z))
         for name, bearing in bearings.items():
-            B = statics.motions[name]
+            B = machine.motions[name]
             each, force = bearing._potential((B @ z)[None, :5])
             energy, load = energy + float(each[0]), load + B[:5].T @ force[0]
         return energy, load
 
-    start = np.zeros(len(statics.load))
-    strength = max(float(np.linalg.norm(statics.load)), float(np.linalg.norm(carried(start)[1])))
+    start = np.zeros(len(machine.load))
+    strength = max(float(np.linalg.norm(machine.load)), float(np.linalg.norm(carried(start)[1])))
 
     def look(z: Real) -> Look:
         energy, load = carried(z)
-        rest = statics.load - statics.stiffness @ z - load
-        total = energy + float(0.5 * z @ statics.stiffness @ z - statics.load @ z)
+        rest = machine.load - machine.stiffness @ z - load
+        total = energy + float(0.5 * z @ machine.stiffness @ z - machine.load @ z)
         return Look(total, rest, float(np.linalg.norm(rest)) / (strength or 1.0))
 
     def hessian(z: Real) -> Real:
-        H = statics.stiffness.copy()
+        H = machine.stiffness.copy()
         for name, bearing in bearings.items():
-            B = statics.motions[name][:5]
+            B = machine.motions[name][:5]
             H += B.T @ bearing._stiffness((B @ z)[None])[0] @ B
         return H
 
     def strain(z: Real) -> dict[str, Real]:
         """Displacements of every bearing over its lever."""
         sizes = {name: np.array([1.0, 1.0, 1.0, b.lever, b.lever, 0.0]) / b.lever for name, b in bearings.items()}
-        return {name: np.abs(statics.motions[name] @ z) * sizes[name] for name in names}
+        return {name: np.abs(machine.motions[name] @ z) * sizes[name] for name in names}
 
     found = minimise(
         look,
@@ -182,7 +166,7 @@ def _settle(system: System, names: Sequence[str], operation: Operation) -> dict[
     if found.residual > ENOUGH:
         raise _failure(operation, strain(found.place), found.residual)
     free = np.array([1.0, 1.0, 1.0, 1.0, 1.0, 0.0])  # how far all gears have rolled says nothing
-    places = {name: free * (statics.motions[name] @ found.place) for name in names}
+    places = {name: free * (machine.motions[name] @ found.place) for name in names}
     return {name: state_at(bearings[name], places[name], found.solves, found.residual) for name in names}
 
 
@@ -198,95 +182,12 @@ def _failure(operation: Operation, strain: Mapping[str, Real], residual: float) 
     return AccuracyError(f"{where} was found only to {residual:.1e} of the load")
 
 
-def _statics(system: System, names: Sequence[str], operation: Operation) -> _Statics:
-    ports = Ports(system)
-    rows = {name: joint_rows(ports, name, joint) for name, joint in system.joints.items()}
-    K = scipy.sparse.block_diag([s.stiffness for s in ports.structures.values()], format="csc")
-    for name, joint in rows.items():
-        if name not in names:
-            B = scipy.sparse.csc_array(joint.relative)
-            K = K + B.T @ scipy.sparse.csc_array(joint.stiffness) @ B
-    motions = {name: _six(rows[name], ports.size) for name in names}
-    load = _tooth_forces(ports, system, operation)
-    weights = {name: _usual_stiffness(_bearing(system, name), operation) for name in names}
-    stacked = np.concatenate([np.sqrt(weights[name])[:, None] * motions[name] for name in names])
-    stacked = np.asarray(stacked[stacked.any(axis=1)])
-    S = scipy.sparse.csc_array(stacked)
-    V = _solutions(K + S.T @ S, _held(ports, rows, names, stacked), np.column_stack([load, stacked.T]))
-    G = V.T @ (K @ V) + (stacked @ V).T @ (stacked @ V)
-    size, directions = np.linalg.eigh(0.5 * (G + G.T))
-    kept = size > _SAME * size[-1]
-    V = V @ (directions[:, kept] / np.sqrt(size[kept]))
-    stiffness = V.T @ (K @ V)
-    return _Statics(0.5 * (stiffness + stiffness.T), V.T @ load, {name: B @ V for name, B in motions.items()})
-
-
-def _six(joint: JointRows, size: int) -> Real:
-    """Relative motion on all six degrees of freedom, (6, n)."""
-    out = np.zeros((6, size))
-    out[[DOFS.index(dof) for dof in joint.dofs]] = joint.relative
-    return out
-
-
-def _usual_stiffness(bearing: RollingBearing, operation: Operation) -> Real:
-    """Stiffness (6,) as one element has it under a force of the mean load's size; rz none."""
-    constant, exponent = bearing.scale
-    force = max(operation.torque / bearing.lever, 1.0)
-    usual = force / (force / constant) ** (1.0 / exponent)
-    return np.asarray(usual * np.array([1.0, 1.0, 1.0, bearing.lever**2, bearing.lever**2, 0.0]))
-
-
-def _tooth_forces(ports: Ports, system: System, operation: Operation) -> Real:
-    """The torques on the gears as a load (n,): every mesh then carries its mean tooth force."""
-    forces = mean_load(_train(system, operation).meshes, operation.torque, operation.shaft).force
-    meshes = ports.structures[operation.component].meshes
-    rows = [ports.embed(operation.component, forces[name] * meshes[name].spin) for name in forces]
-    return np.asarray(np.sum(rows, axis=0))
-
-
-def _train(system: System, operation: Operation) -> GearTrain:
-    train = system.components.get(operation.component)
-    if not isinstance(train, GearTrain):
-        raise InputError(f"operation: {operation.component!r} is no gear train")
-    return train
-
-
-def _held(ports: Ports, rows: Mapping[str, JointRows], names: Sequence[str], stacked: Real) -> Real:
-    """Momenta M N (n, r) of the rigid motions N that no joint and no bearing resists."""
-    columns, momenta = [], []
-    for name, structure in ports.structures.items():
-        R = structure.rigid_modes
-        M = structure.mass
-        R = R @ np.linalg.inv(np.linalg.cholesky(R.T @ (M @ R))).T
-        columns.append(ports.embed(name, R.T).T)
-        momenta.append(ports.embed(name, (M @ R).T).T)
-    R, P = np.hstack(columns), np.hstack(momenta)
-    linear = [joint for name, joint in rows.items() if name not in names]
-    resisted = (stacked @ R).T @ (stacked @ R)
-    for joint in linear:
-        resisted += (joint.relative @ R).T @ joint.stiffness @ (joint.relative @ R)
-    size, directions = np.linalg.eigh(resisted)
-    return np.asarray(P @ directions[:, size <= _HELD * max(float(size[-1]), 1e-300)])
-
-
-def _solutions(A: Any, held: Real, right: Real) -> Real:
-    """A^-1 right, without the motions that are held."""
-    if held.shape[1]:
-        scale = float(abs(A).max()) / float(np.abs(held).max())
-        side = scipy.sparse.csc_array(scale * held)
-        A = scipy.sparse.block_array([[A, side], [side.T, None]])
-        right = np.vstack([right, np.zeros((held.shape[1], right.shape[1]))])
-    factors = scipy.sparse.linalg.splu(scipy.sparse.csc_array(A))
-    solved = factors.solve(right)
-    return np.asarray(solved[: len(solved) - held.shape[1]])
-
-
 def _speeds(system: System) -> Mapping[str, float]:
     """Speed of each shaft, rev/min; empty where the operation gives none."""
     operation = system.operation
     if operation is None or operation.speed is None:
         return {}
-    ratios = mean_load(_train(system, operation).meshes, operation.torque, operation.shaft).speed
+    ratios = load_of(system, operation).speed
     return {shaft: operation.speed * ratio for shaft, ratio in ratios.items()}
 
 

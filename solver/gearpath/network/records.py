@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from ..numerics.arrays import Real
 
 Quantity = Literal["displacement", "velocity", "acceleration", "force", "power"]
@@ -89,8 +91,29 @@ class MeshSource:
 
 @dataclass(frozen=True)
 class Schedule:
-    """Matrices of joints over the torque through the machine, linear between the operating points."""
+    """Matrices of joints over the torque through the machine, linear between the operating points.
+
+    K(T) = (1 - s) K_i + s K_(i+1) with s = (T - T_i) / (T_(i+1) - T_i); beyond the first and the last point theirs.
+    """
 
     torques: Real  # (T,), N m, increasing
     stiffness: Mapping[str, Real]  # joint -> (T, d, d)
     damping: Mapping[str, Real]  # joint -> (T, d, d), of joints whose damping follows their stiffness
+    start: float | None = None  # N m, where an FMU begins; the first point where it is None or beyond the points
+
+    @property
+    def first(self) -> float:
+        """The torque that an FMU begins with, N m."""
+        inside = self.start is not None and self.torques[0] <= self.start <= self.torques[-1]
+        return float(self.start if inside and self.start is not None else self.torques[0])
+
+    def at(self, torque: float) -> tuple[dict[str, Real], dict[str, Real]]:
+        """Stiffness and damping by joint at a torque (N m), (d, d) each; a convex combination of two points."""
+        used = float(min(max(torque, self.torques[0]), self.torques[-1]))
+        i = int(np.clip(np.searchsorted(self.torques, used, side="right") - 1, 0, len(self.torques) - 2))
+        s = (used - self.torques[i]) / (self.torques[i + 1] - self.torques[i])
+        stiffness, damping = (
+            {name: np.asarray((1.0 - s) * table[i] + s * table[i + 1]) for name, table in tables.items()}
+            for tables in (self.stiffness, self.damping)
+        )
+        return stiffness, damping
