@@ -107,7 +107,7 @@ def test_every_coordinate_is_balanced(model):
 
 
 def test_symmetric_shaft_in_closed_form():
-    """End slopes of a shaft under a force F in the middle: theta + M L / (2 E I) = F L^2 / (16 E I), reactions F / 2."""
+    """Slope at the ends under a force F in the middle: theta + M L / (2 E I) = F L^2 / (16 E I); reactions F / 2."""
     found = quiet(spur(torque=180.0))
     force, length, EI = 180.0 / 0.04975, 0.25, 2.07e11 * pi * 0.03**4 / 64.0
     for name, side in (("bearing_1", -1.0), ("bearing_2", -1.0), ("bearing_3", 1.0), ("bearing_4", 1.0)):

@@ -28,7 +28,11 @@ _PAIRS = {"back_to_back": back_to_back, "face_to_face": face_to_face, "tandem": 
 
 def catalogue_of(file: FileTable, folder: Path) -> Path | None:
     """The path of the model's own catalogue of bearings, relative to the folder of the model file."""
-    return folder / file.catalogue_file if file.catalogue_file else None
+    path = folder / file.catalogue_file
+    if file.catalogue_file and not path.is_file():
+        remedy = "give the path of a bearing catalogue (TOML), from the folder of the model file"
+        raise ModelError("catalogue_file", f"{file.catalogue_file}: there is no such file", remedy)
+    return path if file.catalogue_file else None
 
 
 def build_mounting(
@@ -81,4 +85,7 @@ def _named(make: Callable[[], T], key: str) -> T:
         return make()
     except InputError as error:
         problem, _, remedy = str(error).partition("; ")
+        argument, _, text = problem.partition(": ")
+        if argument.isidentifier():  # a key of the geometry, else an argument that the file has no name for
+            key, problem = f"{key}.{argument}" if key.endswith(".geometry") else key, text
         raise ModelError(key, problem, remedy or "correct it") from None

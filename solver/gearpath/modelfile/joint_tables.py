@@ -67,7 +67,7 @@ class BearingTable(MatrixJointTable):
         float, Quantity("axial force with which a row is pressed together before it is loaded", "N", at_least=0.0)
     ] = 0.0
     mirrored: Annotated[bool, Flag("whether the bearing faces the other way, its contact angle negative")] = False
-    arrangement: Annotated[str, Choice("arrangement of two rows", ARRANGEMENTS)] = ""
+    arrangement: Annotated[str, Choice("way to arrange two rows", ARRANGEMENTS)] = ""
     distance: Annotated[float | None, Quantity("distance of two rows", "m", above=0.0)] = None
 
 

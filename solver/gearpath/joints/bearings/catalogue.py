@@ -48,13 +48,19 @@ def _path(file: str | Path | None) -> Path:
     return OWN if file is None else Path(file)
 
 
-@lru_cache(maxsize=8)
 def _read(path: Path) -> dict[str, dict[str, Any]]:
     try:
-        entries = tomllib.loads(path.read_text("utf-8"))
+        return _parsed(path, path.stat().st_mtime_ns)
     except OSError as error:
         reason = error.strerror or str(error)
         raise InputError(f"{path}: cannot be read ({reason}); give the path of a bearing catalogue (TOML)") from None
+
+
+@lru_cache(maxsize=8)
+def _parsed(path: Path, changed: int) -> dict[str, dict[str, Any]]:
+    """The entries of a file as it was when it was last changed."""
+    try:
+        entries = tomllib.loads(path.read_text("utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: {error}; a bearing catalogue is TOML with a table for each designation") from None
     wrong = [name for name, entry in entries.items() if not isinstance(entry, dict)]
