@@ -167,3 +167,18 @@ def test_handedness_is_a_mirror_image(model):
     one, two = (power_flow(assemble(m.system).modal(), omega) for m in (model, mirrored))
     np.testing.assert_allclose(two.path_power, one.path_power, rtol=1e-6, atol=1e-12 * one.input_power.max())
     assert one.paths == two.paths
+
+
+@pytest.mark.parametrize(
+    ("names", "ball", "pitch", "preload"),
+    [(("bearing_1", "bearing_2"), 9.525e-3, 46.0e-3, 800.0), (("bearing_3", "bearing_4"), 11.112e-3, 53.5e-3, 1200.0)],
+)
+def test_matrices_are_those_of_the_bearings_in_the_comment(model, names, ball, pitch, preload):
+    """Typed in by hand from the closed forms of the axially loaded bearing, with two or three digits."""
+    row = gp.BallBearing(13, ball, pitch, 0.52, 0.52, np.radians(40.0))
+    for name, bearing, sense in zip(names, (row, row.mirrored()), (1.0, -1.0)):
+        K = bearing.equilibrium({"uz": sense * preload}).stiffness
+        typed = np.array(model.system.joints[name].stiffness)
+        assert np.abs(K - typed).max() < 0.005 * np.abs(typed).max()
+        assert np.abs(K[3:, 3:] - typed[3:, 3:]).max() < 0.005 * typed[3, 3]
+        assert np.abs(K[:3, 3:] - typed[:3, 3:]).max() < 0.005 * np.abs(typed[:3, 3:]).max()
