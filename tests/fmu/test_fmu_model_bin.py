@@ -21,11 +21,12 @@ UNSIGNED_KINDS, RECORDS = ("pairs", "group", "is_error", "rotation"), {"joint": 
 def layout(content: bytes):
     """The number of doubles, the (start, integers) of each index section, and the start of the text."""
     names = ["N", "groups", "joints", "rows", "blocks", "loads", "outputs", "variables", "excitation"]
-    names += ["text", "tones", "source", "pairs"]
-    n = dict(zip(names, struct.unpack_from("<13I", content, HEADER)))
+    names += ["text", "tones", "source", "pairs", "points"]
+    n = dict(zip(names, struct.unpack_from("<14I", content, HEADER)))
     N = n["N"]
-    doubles = 3 + 3 * N + n["groups"] + 2 * n["rows"] * N + 2 * n["blocks"] + 2 * n["loads"] * N + n["outputs"] * N
+    doubles = 4 + 3 * N + n["groups"] + 2 * n["rows"] * N + 2 * n["blocks"] + 2 * n["loads"] * N + n["outputs"] * N
     doubles += 4 * n["pairs"] + 2 * n["pairs"] * N + 4 * n["tones"]
+    doubles += n["points"] * (1 + 2 * n["blocks"])
     at, sections = DATA + 8 * doubles, {}
     lengths = [n["pairs"], N, n["loads"], n["rows"], 6 * n["joints"], 4 * n["outputs"], 6 * n["variables"]]
     for name, length in zip((*UNSIGNED_KINDS, *RECORDS), lengths):
@@ -96,7 +97,7 @@ def test_model_bin_wrong_numbers(model_bin):
     """Doubles NaN or infinite in turn, sealed: refused; all of the first, and of each section some."""
     original, attempt = model_bin
     n, doubles, _, _ = layout(original)
-    first = 3 + 3 * n["N"] + n["groups"]
+    first = 4 + 3 * n["N"] + n["groups"]
     for i in [*range(first + 2), *range(first + 2, doubles, 53), doubles - 1]:
         for bad in (math.nan, math.inf):
             content = bytearray(original)
@@ -133,7 +134,7 @@ def test_model_bin_wrong_indices(model_bin):
 
 def test_model_bin_of_another_version_says_what_to_do(model_bin):
     original, attempt = model_bin
-    for version in (0, 1, 3):
+    for version in (0, 1, 2, 4):
         content = bytearray(original)
         struct.pack_into("<I", content, 8, version)
         alive, message = attempt(sealed(bytes(content)))

@@ -129,6 +129,7 @@ def layout(network) -> dict[str, int]:
         "frequency": 8,
         "flags": 3,
         "steps": 2,
+        "torque": 3,
         "sizes": 8,
         "changed": len(network.joints),
         "K": blocks,

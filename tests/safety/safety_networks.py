@@ -5,13 +5,18 @@ from dataclasses import replace
 import numpy as np
 
 from gearpath.network.modal import ModalNetwork
-from gearpath.network.records import JointRows, Load, MeshSource, Output, Tone
+from gearpath.network.records import JointRows, Load, MeshSource, Output, Schedule, Tone
 
 
 def networks() -> dict[str, ModalNetwork]:
-    """By name: a bearing and a mount, the same with a gear mesh source, and critical damping (no modal form)."""
+    """By name: a bearing and a mount; a gear mesh source; stiffness over torque; critical damping, no modal form."""
     plain = _pair()
-    return {"plain": plain, "source": _with_source(plain), "critical": _critical()}
+    return {
+        "plain": plain,
+        "source": _with_source(plain),
+        "schedule": _with_schedule(plain),
+        "critical": _critical(),
+    }
 
 
 def _pair() -> ModalNetwork:
@@ -51,6 +56,17 @@ def _with_source(network: ModalNetwork) -> ModalNetwork:
     )
     source = MeshSource("mesh.transmission_error", 1000.0, 23, tones)
     return replace(network, name="source", source=source, loads=network.loads[:1])
+
+
+def _with_schedule(network: ModalNetwork) -> ModalNetwork:
+    """Both matrices of the bearing, of any rank, and the stiffness of the mount follow the torque."""
+    K = network.joints[0].stiffness
+    bearing = np.array([0.3 * np.diag(np.diag(K)), [[4e7, 2e6], [2e6, 1e5]], K])
+    mount = np.array([[[0.0]], [[1e7]], [[3e7]]])
+    schedule = Schedule(
+        np.array([-5.0, 20.0, 100.0]), {"bearing": bearing, "mount": mount}, {"bearing": 1e-6 * bearing}, start=30.0
+    )
+    return replace(network, name="schedule", schedule=schedule, loads=network.loads[:1])
 
 
 def _critical() -> ModalNetwork:

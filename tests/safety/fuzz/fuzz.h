@@ -62,7 +62,7 @@ size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t max_size);
 /* Half of the mutations put a telling number in the place of one that is there. */
 static inline size_t fuzz_mutate_numbers(uint8_t *data, size_t size, size_t max_size, unsigned seed) {
     static const double reals[] = {0, 1, -1, 1e-300, 5e-324, 1e308, -1e308, NAN, INFINITY, 1e-8, 1e6, 0.5, 1e16, 4.6e18, -0.0, 2};
-    static const uint32_t words[] = {0, 1, 2, 3, 6, 7, 8191, 8192, 8193, 0x7FFFFFFF, 0xFFFFFFFF, 0x80000000, 1u << 24, 64, 73, 25};
+    static const uint32_t words[] = {0, 1, 2, 3, 6, 7, 8191, 8192, 8193, 0x7FFFFFFF, 0xFFFFFFFF, 0x80000000, 1u << 24, 64, 73, 26};
     const unsigned choice = seed >> 2;
     if (size < 16 || seed % 4 > 1) return LLVMFuzzerMutate(data, size, max_size);
     if (seed % 4)

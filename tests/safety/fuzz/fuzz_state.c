@@ -45,7 +45,8 @@ static void wear(GpSession *s) {
     for (unsigned reference = 0; reference < p->model.variables; reference++) {
         const size_t size = gp_variable_size(&p->model, p->model.variable + reference);
         double value[ROOM];
-        if (gp_role(p->model.variable[reference].kind) != GP_IS_PARAMETER || size > ROOM) continue;
+        const GpVariable *v = p->model.variable + reference;
+        if (size > ROOM || (gp_role(&p->model, v) != GP_IS_PARAMETER && v->kind != GP_TORQUE)) continue;
         if (gp_get(p, &reference, 1, value, size)) continue;
         for (size_t i = 0; i < size; i++) value[i] *= 1.5;
         gp_set(p, &reference, 1, value, size);
