@@ -123,7 +123,7 @@ def on_a_plate():
         "axis_1": [1.0, 0.0, 0.0],
         "axis_2": [0.0, 0.0, 1.0],
         "thickness": 0.02,
-        "elements": 6,
+        "elements": 4,
         "footprints": {name: {"centre": [x, 0.0, z], "size": [0.05, 0.05]} for name, (x, z) in seats.items()},
     }
     for name in seats:
