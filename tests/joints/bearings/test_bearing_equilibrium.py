@@ -1,9 +1,12 @@
 """Displacements under load: residuals by the oracle, reactions, refusals and warnings."""
 
+from dataclasses import replace
+
 import bearing_oracles as oracles
 import numpy as np
 import pytest
 from bearing_cases import KINDS, random_displacement, random_pair
+from scipy.integrate import quad_vec
 
 from gearpath.errors import InputError
 from gearpath.joints.bearings import BallBearing, RollerBearing, back_to_back
@@ -142,3 +145,17 @@ def test_phase_average_under_load_warns_once():
     assert len(caught) <= inner_and_outer
     with pytest.raises(InputError, match="samples: 0"):
         ANGULAR.phase_average({"uz": 100.0}, samples=0)
+
+
+def test_phase_average_covers_one_pitch_evenly():
+    """The mean over the angle of the first ball, by quadrature; half a pitch, or uneven places, would miss it."""
+    few = replace(ANGULAR, balls=5, contact_angle=0.3)
+    q, pitch = np.array([2e-5, 1e-5, 5e-6, 0, 0, 0]), 2.0 * np.pi / 5
+
+    def mean(end):
+        return quad_vec(lambda phase: replace(few, phase=phase).stiffness(q), 0.0, end, epsrel=1e-6)[0] / end
+
+    whole = mean(pitch)
+    size = np.abs(whole[:3, :3]).max()
+    assert np.abs(few.phase_average(q, samples=256) - whole)[:3, :3].max() < 1e-4 * size
+    assert np.abs(mean(0.5 * pitch) - whole)[:3, :3].max() > 1e-2 * size
