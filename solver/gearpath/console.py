@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from rich.console import Console
@@ -19,9 +19,11 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from .errors import GearpathError, InputError
-from .fmu.checks import ValidationReport
-from .fmu.conformance import Finding, Severity
-from .modelfile import Model, load
+
+if TYPE_CHECKING:  # the models and the solver behind them are loaded when they are used: --help answers at once
+    from .fmu.checks import ValidationReport
+    from .fmu.conformance import Finding
+    from .modelfile import Model
 
 DONE, CHECK_FAILED, BAD_INPUT = 0, 1, 2
 out = Console(highlight=False, soft_wrap=True)
@@ -29,13 +31,13 @@ err = Console(stderr=True, highlight=False, soft_wrap=True)
 
 
 @contextmanager
-def notes() -> Iterator[None]:
+def notes(to: Console = out) -> Iterator[None]:
     """Print warnings as notes, without the line of the program that they come from."""
     with warnings.catch_warnings(record=True) as noted:
         warnings.simplefilter("always", UserWarning)
         yield
     for note in noted:
-        out.print(f"note: {escape(str(note.message))}")
+        to.print(f"note: {escape(str(note.message))}")
 
 
 @contextmanager
@@ -54,16 +56,21 @@ def _stop(sentence: str) -> NoReturn:
     sys.exit(BAD_INPUT)
 
 
-def load_with(path: Path, settings: Sequence[str]) -> Model:
-    """The model of a file with `key=value` settings applied, values in TOML."""
+def load_with(path: Path, settings: Sequence[str], *, noted: bool = True) -> Model:
+    """The model of a file with `key=value` settings applied, values in TOML; notes on its bearings go to stderr."""
+    from .modelfile import load
+
     changes: dict[str, Any] = {}
     for setting in settings:
         key, separator, text = setting.partition("=")
         if not separator or not key.strip():
             raise InputError(f"--set {setting}: is not KEY=VALUE; write for example --set components.casing.mass=14")
         changes[key.strip()] = _toml_value(text.strip())
-    model = load(path)
-    return model.replace(changes) if changes else model
+    model = load(path).replace(changes) if changes else load(path)
+    if noted:
+        with notes(err):
+            _ = model.system  # the operating point of its bearings
+    return model
 
 
 def _toml_value(text: str) -> Any:
@@ -140,12 +147,16 @@ def findings_as_list(findings: Sequence[Finding]) -> list[dict[str, str]]:
 
 def counted(findings: Sequence[Finding]) -> str:
     """How many findings of each severity there are, in words."""
+    from .fmu.conformance import Severity
+
     counts = [(sum(f.severity == kind for f in findings), kind.value) for kind in Severity]
     return ", ".join(f"{n} {name}{'s' if n > 1 else ''}" for n, name in counts if n) or "conforms to the standard"
 
 
 def print_findings(findings: Sequence[Finding]) -> None:
     """Findings of the conformance check, one a line with the clause of the standard."""
+    from .fmu.conformance import Severity
+
     colours = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.NOTE: "cyan"}
     for finding in findings:
         head = f"[{colours[finding.severity]}]{finding.severity}[/] {finding.rule}"

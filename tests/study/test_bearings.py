@@ -23,7 +23,9 @@ def case(designation, load=None, displacement=None, *, phases=False, **more):
 def close(K, expected, rtol=1e-9):
     size = np.sqrt(np.diag(expected))
     scale = np.outer(size, size)
-    np.testing.assert_allclose(K / np.where(scale > 0, scale, 1.0), expected / np.where(scale > 0, scale, 1.0), atol=rtol)
+    np.testing.assert_allclose(
+        K / np.where(scale > 0, scale, 1.0), expected / np.where(scale > 0, scale, 1.0), atol=rtol
+    )
 
 
 LOADS = [
@@ -76,6 +78,16 @@ def test_pure_axial_load_has_its_closed_form():
     np.testing.assert_allclose([K[3, 3], K[4, 4]], row.r**2 * K[2, 2] / 2, rtol=1e-9)
     assert [item.contact_angle for item in elements(found.bearing, found.state)] == pytest.approx([a] * 15, rel=1e-9)
     assert np.count_nonzero(record.shown(K)) == 9
+
+
+def test_weak_couplings_are_shown_and_rounding_is_not():
+    K = np.diag([1e8, 1e8, 1e7, 1e4, 1e4, 0.0])
+    K[0, 1] = K[1, 0] = 1.0  # 1e-8 of the diagonal
+    K[2, 4] = K[4, 2] = 1e-4  # 3e-10
+    found = record.shown(K)
+    assert (found[0, 1], found[2, 4]) == (1.0, 0.0)
+    assert np.count_nonzero(found) == 7
+    assert record.couplings(K[None], 1e-9) == [(0, 1)]
 
 
 @pytest.mark.parametrize(("designation", "load"), LOADS)
@@ -139,7 +151,8 @@ def test_phases_turn_the_cage_through_one_distance():
     q = {"ux": 5e-6, "uy": 2e-6}
     found = case("6205-like", displacement=q, phases=True).phases
     each = [
-        stiffness([Balls(SHAPES["6205-like"], turned=2.0 * np.pi * k / 16 / 9)], [5e-6, 2e-6, 0, 0, 0]) for k in range(16)
+        stiffness([Balls(SHAPES["6205-like"], turned=2.0 * np.pi * k / 16 / 9)], [5e-6, 2e-6, 0, 0, 0])
+        for k in range(16)
     ]
     close(found.average, np.mean(each, axis=0))
     low, high = found.diagonal
@@ -240,5 +253,5 @@ def test_machine_phases_keep_the_tooth_force(machine):
 def test_machine_without_rolling_bearings_or_with_another_joint(machine):
     with pytest.raises(InputError, match="no bearing given by geometry"):
         study_machine(gp.load("models/gearbox.toml").system)
-    with pytest.raises(InputError, match="'mount_1'.*bearing_1"):
+    with pytest.raises(InputError, match=r"'mount_1'.*bearing_1"):
         study_machine(machine.system, "mount_1")

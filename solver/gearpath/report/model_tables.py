@@ -12,7 +12,7 @@ from ..joints.joint import Matrix
 from ..network.ports import joint_place
 from ..network.system import MeshExcitation, System
 from .table import Cell, MatrixCell, Table, table
-from .wording import given, listed, quantity
+from .wording import given, listed, number, quantity
 
 
 def model_tables(system: System) -> list[Table]:
@@ -168,8 +168,9 @@ def matrix_unit(row: str, column: str, damping: bool) -> str:
 
 
 def _matrix(joint: Joint, matrix: Matrix, damping: bool) -> MatrixCell:
+    digits = given if joint.mounting is None else lambda value: number(value, 5)  # a computed matrix
     rows = [
-        [(given(value), matrix_unit(row, column, damping)) for column, value in zip(joint.dofs, values)]
+        [(digits(value), matrix_unit(row, column, damping)) for column, value in zip(joint.dofs, values)]
         for row, values in zip(joint.dofs, matrix)
     ]
     return MatrixCell(joint.dofs, rows)

@@ -13,6 +13,7 @@ from ..files import write_text
 from ..fmu.checks import ValidationReport
 from . import figures, findings, tables
 from .balance import balance_figure, shares_figure
+from .bearings import bearing_section
 from .bode import bode_figures
 from .layout import Figure
 from .model_tables import excitation_words, model_tables
@@ -71,6 +72,9 @@ def figure_data(drawn: Sequence[Figure]) -> str:
     for figure in drawn:
         traces = []
         for trace in figure.data:
+            if "x" not in trace:  # polar
+                traces.append(trace)
+                continue
             key = json.dumps(trace["x"], separators=(",", ":"))
             traces.append({**trace, "x": grids.setdefault(key, len(grids))})
         book[figure.key] = {"data": traces, "layout": figure.layout}
@@ -84,6 +88,7 @@ def _content(model: Model, results: Results, validations: Sequence[ValidationRep
     paths = [figures.path_figure(results), figures.ranking_figure(results)] if results.paths else []
     balance = [balance_figure(results), shares_figure(results)]
     bode = bode_figures(validations, results.network)
+    rolling = bearing_section(model)
     return {
         "title": model.name,
         "computed": findings.computed(results),
@@ -95,10 +100,11 @@ def _content(model: Model, results: Results, validations: Sequence[ValidationRep
         "excitation": excitation_words(model.system),
         "figures": {figure.key: figure for figure in carried + paths + balance},
         "bode": bode,
+        "bearings": rolling,
         "validations": validations,
         "file": Path(model.file).name if model.file else None,
         "content": json.dumps(model.to_dict(), indent=2, ensure_ascii=False, default=str),
-        "data": figure_data([*carried, *paths, *balance, *bode]),
+        "data": figure_data([*carried, *paths, *balance, *bode, *(rolling.figures if rolling else ())]),
     }
 
 

@@ -9,7 +9,7 @@
   function draw(box) {
     var figure = book.figures[box.id];
     if (!figure || box.dataset.drawn) { return; }
-    figure.data.forEach(function (trace) { trace.x = book.grids[trace.x]; });
+    figure.data.forEach(function (trace) { if ("x" in trace) { trace.x = book.grids[trace.x]; } });
     var narrow = box.clientWidth < 560; // no room for buttons beside the curves
     if (touch) { figure.layout.dragmode = false; } // a finger scrolls the page
     if (narrow) {

@@ -57,7 +57,7 @@ def _read(path: Path) -> dict[str, dict[str, Any]]:
 
 
 @lru_cache(maxsize=8)
-def _parsed(path: Path, changed: int) -> dict[str, dict[str, Any]]:
+def _parsed(path: Path, _changed: int) -> dict[str, dict[str, Any]]:
     """The entries of a file as it was when it was last changed."""
     try:
         entries = tomllib.loads(path.read_text("utf-8"))
