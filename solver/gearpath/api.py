@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -132,8 +133,8 @@ def power_matrices(
 def operating_point(model: Model) -> dict[str, Equilibrium]:
     """State of every rolling bearing that the model gives by geometry or catalogue, by the joint's name.
 
-    Displacement of the inner ring (6,), the load that it carries (6,), stiffness (6, 6), loads and contact angles of the
-    rolling elements, linear solves and residual, notes where the theory stops; SI units, degrees of freedom ux to rz.
+    Displacement of the inner ring (6,), the load that it carries (6,), stiffness (6, 6), loads and contact angles of
+    the rolling elements, linear solves and residual, notes where the theory stops; SI units, on ux to rz.
     With `[operation]` from the static equilibrium of the whole machine. Raises ModelError for a load that the bearings
     cannot carry.
     """
@@ -149,8 +150,8 @@ def torque_sweep(
 ) -> xr.Dataset:
     """Power flow over the torque through the gears: alpha(torque, frequency).
 
-    At each torque (N m, on the shaft of `[operation]`) every bearing given by geometry or catalogue has the stiffness of
-    its operating point. `alpha`, `alpha_force`, `alpha_moment`, `input_power`, `transmitted_power` (W) over `torque`
+    At each torque (N m, on the shaft of `[operation]`) every bearing given by geometry or catalogue has the stiffness
+    of its operating point. `alpha`, `alpha_force`, `alpha_moment`, `input_power`, `transmitted_power` (W) over `torque`
     and `frequency`, `path_alpha` also over `path`, and `stiffness.JOINT` over `torque`, `dof`, `dof_2`. Raises
     InputError for a model without operation and for torques that the bearings cannot carry.
     """
@@ -194,8 +195,8 @@ def export_fmu(
 
     kind "native" runs without Python on every platform; kind "python" holds the whole solver, with the design
     parameters as well, and needs Python with numpy and scipy in the host. `documentation` adds plots of this very model
-    and reference results to the native kind. `schedule` are at least two torques (N m), increasing: a native FMU has the
-    input `operation.torque`, between whose points the stiffness of the bearings that follow the operation is
+    and reference results to the native kind. `schedule` are at least two torques (N m), increasing: a native FMU has
+    the input `operation.torque`, between whose points the stiffness of the bearings that follow the operation is
     interpolated; the model's own torque is one of them where it lies between. Raises InputError for an unknown kind or
     version, torques that cannot be used, and a path that cannot be written.
     """
@@ -218,7 +219,9 @@ def _scheduled(model: Model, torques: list[float]) -> Schedule:
     """Matrices over the torque, which begin at the model's own."""
     operation = model.system.operation
     if operation is not None and torques and torques[0] < operation.torque < torques[-1]:
-        torques = torques if operation.torque in torques else sorted([*torques, operation.torque])
+        place = bisect_left(torques, operation.torque)  # what is out of order stays so, and is refused
+        own = [] if operation.torque in torques else [operation.torque]
+        torques = [*torques[:place], *own, *torques[place:]]
     return replace(_schedule(model.system, torques), start=None if operation is None else operation.torque)
 
 

@@ -9,13 +9,14 @@ from pathlib import Path
 
 from .. import components, joints
 from ..errors import GearpathError, InputError
+from ..joints import bearings
 from ..network import system as system_module
 from ..network.system import System
 from .python_settings import Entry
 
 _SOLVER = Path(__file__).resolve().parents[1]
 _FLOORS = ("numerics", "components", "joints", "reduction", "network")
-_RUNNING = ("python_parts.py", "python_design.py", "python_settings.py", "python_machine.py")
+_RUNNING = ("python_parts.py", "python_bearings.py", "python_design.py", "python_settings.py", "python_machine.py")
 _TEMPLATES = ("entry.py", "slave.py")
 # where hatch_build.py puts them, and where they are in a checkout, which counts more
 _FOLDERS = (_SOLVER.parents[1] / "fmu_src" / "pythonfmu", _SOLVER / "fmu" / "runtime" / "pythonfmu")
@@ -32,7 +33,7 @@ def model_source(system: System, entries: Sequence[Entry], frequency: float) -> 
     text = repr(system)
     names = {
         name: value
-        for module in (components, joints, system_module)
+        for module in (components, joints, bearings, system_module)
         for name, value in vars(module).items()
         if isinstance(value, type)
     }

@@ -9,7 +9,9 @@ import numpy as np
 
 from ..components import GearTrain, RigidBody, Shaft
 from ..errors import InputError
+from ..network.operation import at_operating_point
 from ..network.system import System
+from .python_bearings import bearing_parameters, operation_parameters
 from .python_parts import DesignParameter, body_parameters, joint_position, mesh_position, shaft_parameters
 
 ROUNDED = 1e-3  # printed inertias are rounded: a flat body may miss the triangle inequality by this part
@@ -29,6 +31,10 @@ def design_parameters(system: System) -> tuple[DesignParameter, ...]:
     for name, joint in system.joints.items():
         if joint.at is not None:
             found += [joint_position(name, axis) for axis in range(3)]
+        if joint.mounting is not None:
+            found += bearing_parameters(name, joint.mounting)
+    if system.operation is not None:
+        found += operation_parameters(system.operation)
     return tuple(found)
 
 
@@ -36,7 +42,8 @@ def redesign(system: System, values: Mapping[str, float]) -> System:
     """The system with the given design parameters set, the others untouched.
 
     The order of `values` does not matter. A length stretches its shaft with everything on it; a mesh with
-    a position stands there afterwards. Raises InputError where the parts do not fit together.
+    a position stands there afterwards. Bearings given by their geometry have the stiffness of the operating point that
+    all this makes. Raises InputError where the parts do not fit together.
     """
     changed = system
     for parameter in design_parameters(system):
@@ -49,7 +56,7 @@ def redesign(system: System, values: Mapping[str, float]) -> System:
         elif isinstance(component, GearTrain):
             for shaft_name, shaft in component.shafts.items():
                 _check_shaft(f"{name}.{shaft_name}", shaft)
-    return changed
+    return at_operating_point(changed)
 
 
 def _check_body(name: str, body: RigidBody) -> None:

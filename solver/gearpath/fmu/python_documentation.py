@@ -40,6 +40,8 @@ error is an input.</li>
 step.</li>
 <li>Joint parameters and modal damping are tunable at any time. Design parameters are fixed: set them
 before the initialisation ends; the components are then solved again.</li>
+<li>Bearings given by their geometry have the stiffness, and the damping that follows it, of their operating point:
+geometry, preload, load and torque are design parameters, the matrices calculated from them can be read only.</li>
 <li>A value that cannot be used is refused with a sentence in the log (turn logging on), and the old value
 stays. An indefinite matrix is noticed when it is next used, since entries are set one by one; the joint
 then keeps its last valid matrices.</li>

@@ -19,6 +19,7 @@ from ..network.system import System
 from ..network.time_twin import TimeTwin, time_twin
 from ..numerics.arrays import Real
 from ..numerics.propagator import Propagator, discretise
+from .python_bearings import decided_by_design
 from .python_design import design_parameters, redesign
 from .python_settings import Entry, Settings
 
@@ -43,7 +44,7 @@ class Machine:
         self._parameters = {parameter.name: parameter for parameter in design_parameters(system)}
         self._solved: ModalNetwork = assemble(system).modal().viscous()
         self._network = self._solved
-        self._valid = Settings.of(self._solved)
+        self._valid = Settings.of(self._solved, decided_by_design(system))
         self._wanted = self._valid.copy()
         self._pending = False
         self._frequency = float(frequency)
@@ -90,6 +91,9 @@ class Machine:
         if not entry.is_output:
             return self._wanted.entry(entry)
         self.use()
+        if entry.kind == "followed":
+            joint = next(joint for joint in self._network.joints if joint.name == entry.target)
+            return float((joint.stiffness if ".stiffness" in entry.name else joint.damping)[entry.row, entry.column])
         if entry.kind == "output":
             return self._output_values().get(entry.target, 0.0)
         return self._response_values().get(entry.name, 0.0)

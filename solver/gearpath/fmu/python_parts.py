@@ -25,6 +25,7 @@ class DesignParameter:
     positive: bool
     read: Callable[[System], float]
     edit: Callable[[System, float], System]
+    whole: bool = False  # a count
 
     def check(self, value: float) -> None:
         """Raise InputError for a value that no design can have."""
@@ -32,9 +33,11 @@ class DesignParameter:
             raise InputError(f"{self.name} must be set to a finite number, not {value}")
         if self.positive and value <= 0.0:
             raise InputError(f"{self.name} must be positive, not {value:g} {self.unit}")
+        if self.whole and value != round(value):
+            raise InputError(f"{self.name} must be a whole number, not {value:g}")
 
 
-def _with(items: Mapping[str, T], name: str, item: T) -> dict[str, T]:
+def exchanged(items: Mapping[str, T], name: str, item: T) -> dict[str, T]:
     """The same mapping, in the same order, with one item exchanged."""
     return {key: item if key == name else value for key, value in items.items()}
 
@@ -47,8 +50,8 @@ def body_parameters(name: str, body: RigidBody) -> list[DesignParameter]:
         assert isinstance(found, RigidBody)
         return found
 
-    def exchanged(system: System, changed: RigidBody) -> System:
-        return replace(system, components=_with(system.components, name, changed))
+    def with_body(system: System, changed: RigidBody) -> System:
+        return replace(system, components=exchanged(system.components, name, changed))
 
     def inertia(key: str) -> DesignParameter:
         what = f"{'Moment' if key[0] == key[1] else 'Tensor element'} {key} of the inertia of {name}"
@@ -59,8 +62,8 @@ def body_parameters(name: str, body: RigidBody) -> list[DesignParameter]:
             max(body.inertia.values()),
             key[0] == key[1],
             lambda system: body_of(system).inertia[key],
-            lambda system, value: exchanged(
-                system, replace(body_of(system), inertia=_with(body_of(system).inertia, key, value))
+            lambda system, value: with_body(
+                system, replace(body_of(system), inertia=exchanged(body_of(system).inertia, key, value))
             ),
         )
 
@@ -68,7 +71,7 @@ def body_parameters(name: str, body: RigidBody) -> list[DesignParameter]:
         def edit(system: System, value: float) -> System:
             old = body_of(system)
             x, y, z = (value if k == axis else c for k, c in enumerate(old.centre_of_gravity))
-            return exchanged(system, replace(old, centre_of_gravity=(x, y, z)))
+            return with_body(system, replace(old, centre_of_gravity=(x, y, z)))
 
         return DesignParameter(
             f"{name}.centre_of_gravity[{axis + 1}]",
@@ -87,7 +90,7 @@ def body_parameters(name: str, body: RigidBody) -> list[DesignParameter]:
         body.mass,
         True,
         lambda system: body_of(system).mass,
-        lambda system, value: exchanged(system, replace(body_of(system), mass=value)),
+        lambda system, value: with_body(system, replace(body_of(system), mass=value)),
     )
     return [mass, *(inertia(key) for key in body.inertia), *(centre(axis) for axis in range(3))]
 
@@ -100,8 +103,8 @@ def _train(system: System, name: str) -> GearTrain:
 
 def _with_shaft(system: System, name: str, shaft_name: str, shaft: Shaft) -> System:
     train = _train(system, name)
-    changed = replace(train, shafts=_with(train.shafts, shaft_name, shaft))
-    return replace(system, components=_with(system.components, name, changed))
+    changed = replace(train, shafts=exchanged(train.shafts, shaft_name, shaft))
+    return replace(system, components=exchanged(system.components, name, changed))
 
 
 def shaft_parameters(name: str, shaft_name: str, shaft: Shaft) -> list[DesignParameter]:
@@ -206,7 +209,7 @@ def joint_position(name: str, axis: int) -> DesignParameter:
         assert at is not None
         x, y, z = (value if k == axis else c for k, c in enumerate(at))
         changed = replace(system.joints[name], at=(x, y, z))
-        return replace(system, joints=_with(system.joints, name, changed))
+        return replace(system, joints=exchanged(system.joints, name, changed))
 
     return DesignParameter(
         f"{name}.position[{axis + 1}]", "m", f"{'xyz'[axis]} of the place of {name}", 0.1, False, read, edit

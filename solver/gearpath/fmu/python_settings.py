@@ -19,7 +19,7 @@ class Entry:
     """A variable of the FMU; its value reference is its place in the table."""
 
     name: str
-    kind: str  # input, frequency, stiffness, damping, modal_damping, design, output (over time) or response
+    kind: str  # input, frequency, stiffness, damping, modal_damping, design, followed (a matrix), output or response
     target: str = ""  # the load, joint, component or output over time that it belongs to
     row: int = 0  # of a matrix entry
     column: int = 0
@@ -27,10 +27,12 @@ class Entry:
     @property
     def is_output(self) -> bool:
         """Whether the variable is calculated."""
-        return self.kind in ("output", "response")
+        return self.kind in ("output", "response", "followed")
 
     def check(self, value: float) -> None:
         """Raise InputError for a number that the variable can never take."""
+        if self.kind == "followed":
+            raise InputError(f"{self.name} follows from the bearing's geometry and load, and cannot be set; set those")
         if self.is_output:
             raise InputError(f"{self.name} is an output and cannot be set")
         if not np.isfinite(value):
@@ -51,11 +53,14 @@ class Settings:
     modal_damping: dict[str, float] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, network: ModalNetwork) -> Settings:
-        """The parameters that a network has, with no design parameter set."""
+    def of(cls, network: ModalNetwork, decided: frozenset[str]) -> Settings:
+        """The parameters that a network has, with no design parameter set.
+
+        `decided`: matrices, as bearing_1.stiffness, that follow from the design and are no parameters.
+        """
         return cls(
-            stiffness={joint.name: joint.stiffness.tolist() for joint in network.joints},
-            damping={joint.name: joint.damping.tolist() for joint in network.joints},
+            stiffness={j.name: j.stiffness.tolist() for j in network.joints if f"{j.name}.stiffness" not in decided},
+            damping={j.name: j.damping.tolist() for j in network.joints if f"{j.name}.damping" not in decided},
             modal_damping=dict(network.modal_damping),
         )
 
@@ -93,11 +98,11 @@ class Settings:
     def take_back_joints(self, valid: Settings) -> list[str]:
         """Give every joint with an indefinite matrix its valid matrices again; return a sentence for each."""
         problems = []
-        for joint in self.stiffness:
+        for joint in {**self.stiffness, **self.damping}:
             for what, matrices in (("stiffness", self.stiffness), ("damping", self.damping)):
-                if not is_semidefinite(matrices[joint]):
-                    self.stiffness[joint] = deepcopy(valid.stiffness[joint])
-                    self.damping[joint] = deepcopy(valid.damping[joint])
+                if joint in matrices and not is_semidefinite(matrices[joint]):
+                    for own, last in ((self.stiffness, valid.stiffness), (self.damping, valid.damping)):
+                        own |= {joint: deepcopy(last[joint])} if joint in last else {}
                     problems.append(
                         f"The {what} matrix of {joint} is not positive semidefinite; "
                         "the joint keeps its last valid matrices."
@@ -110,8 +115,8 @@ class Settings:
         joints = tuple(
             replace(
                 joint,
-                stiffness=np.array(self.stiffness[joint.name]),
-                damping=np.array(self.damping[joint.name]),
+                stiffness=np.array(self.stiffness.get(joint.name, joint.stiffness)),
+                damping=np.array(self.damping.get(joint.name, joint.damping)),
             )
             for joint in network.joints
         )

@@ -9,6 +9,7 @@ from ..errors import GearpathError, InputError
 from ..network.assemble import assemble
 from ..network.modal import ModalNetwork
 from ..network.system import System
+from .python_bearings import decided_by_design
 from .python_design import design_parameters, redesign
 from .python_settings import Entry
 from .variables import Kind, Variable, variable_table
@@ -22,7 +23,8 @@ def python_table(system: System, network: ModalNetwork, frequency: float) -> tup
 
     Raises InputError where two variables have the same name.
     """
-    common = variable_table(network, frequency)
+    decided = decided_by_design(system)
+    common = tuple(_calculated(variable, network, decided) for variable in variable_table(network, frequency))
     designs = tuple(
         Variable(
             parameter.name,
@@ -43,7 +45,27 @@ def python_table(system: System, network: ModalNetwork, frequency: float) -> tup
             raise InputError(f"two FMU variables are called {design.name!r}; rename what one of them belongs to")
     moved = _moved_table(system, frequency)
     names = tuple(design.name for design in designs)
-    return (*(_completed(variable, common, moved, names) for variable in common), *designs)
+    matrices = {variable.name for variable in common if variable.causality == "calculatedParameter"}
+    completed = (_completed(variable, common, moved, names) for variable in common)
+    return (*(_without(variable, matrices) for variable in completed), *designs)
+
+
+def _without(variable: Variable, names: set[str]) -> Variable:
+    """The variable without dependencies on these."""
+    return replace(
+        variable,
+        dependencies=tuple(name for name in variable.dependencies if name not in names),
+        initial_dependencies=tuple(name for name in variable.initial_dependencies if name not in names),
+    )
+
+
+def _calculated(variable: Variable, network: ModalNetwork, decided: frozenset[str]) -> Variable:
+    """The entry of a matrix that the design decides as what it is."""
+    if variable.kind not in (Kind.STIFFNESS, Kind.DAMPING):
+        return variable
+    if f"{network.joints[variable.index[0]].name}.{variable.kind.name.lower()}" not in decided:
+        return variable
+    return replace(variable, causality="calculatedParameter", start=None, minimum=None)
 
 
 def entries(variables: Sequence[Variable], network: ModalNetwork) -> tuple[Entry, ...]:
@@ -60,6 +82,8 @@ def _entry(variable: Variable, network: ModalNetwork) -> Entry:
             return Entry(variable.name, "input", network.loads[index].name)
         case Kind.FREQUENCY:
             return Entry(variable.name, "frequency")
+        case Kind.STIFFNESS | Kind.DAMPING if variable.causality == "calculatedParameter":
+            return Entry(variable.name, "followed", network.joints[index].name, row, column)
         case Kind.STIFFNESS | Kind.DAMPING:
             return Entry(variable.name, variable.kind.name.lower(), network.joints[index].name, row, column)
         case Kind.MODAL_DAMPING:
@@ -78,6 +102,8 @@ def _completed(
     designs: tuple[str, ...],
 ) -> Variable:
     """The variable with the dependencies that it has in any design."""
+    if variable.causality == "calculatedParameter":
+        return replace(variable, dependencies=(), initial_dependencies=designs)
     if variable.causality != "output":
         return variable
     inputs, parameters = variable.dependencies, variable.initial_dependencies
@@ -103,6 +129,7 @@ def _moved_table(system: System, frequency: float) -> dict[str, Variable] | None
     moved = {
         parameter.name: float(parameter.read(system)) + _NUDGE * parameter.nominal * (1.0 + k / np.pi)
         for k, parameter in enumerate(design_parameters(system))
+        if not parameter.whole
     }
     try:
         table = variable_table(assemble(redesign(system, moved)).modal().viscous(), frequency)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -9,25 +10,37 @@ from ..errors import InputError
 from .bearings.checks import DOFS
 from .bearings.equilibrium import Equilibrium, settle, state_at
 from .bearings.rolling import RollingBearing
-from .bearings.stack import BearingStack
+from .bearings.stack import BearingStack, back_to_back, face_to_face, tandem
+
+PAIRS = {"back_to_back": back_to_back, "face_to_face": face_to_face, "tandem": tandem}
 
 
 @dataclass(frozen=True)
 class Mounting:
     """A rolling bearing between two ports; the first is its inner ring. SI units.
 
-    At a `load` (N, N m) the named degrees of freedom are free and the others held, at a `displacement` (m, rad) the
-    ones not named are zero; with neither, the bearing takes what the operation of the whole machine gives it.
-    `damping_time` T (s) gives C = T K; None where the joint's damping does not follow its stiffness.
+    `row` is the bearing, or one of two rows in an `arrangement` (a key of PAIRS), `distance` apart and pressed together
+    by the force `preload`. At a `load` (N, N m) the named degrees of freedom are free and the others held, at a
+    `displacement` (m, rad) the ones not named are zero; with neither, the bearing takes what the operation of the whole
+    machine gives it. `damping_time` T (s) gives C = T K; None where the joint's damping does not follow its stiffness.
     """
 
-    bearing: RollingBearing
+    row: RollingBearing
+    arrangement: str = ""
+    distance: float = 0.0
+    preload: float = 0.0
     load: Mapping[str, float] | None = None
     displacement: Mapping[str, float] | None = None
     damping_time: float | None = None
 
     def __hash__(self) -> int:
-        return hash((self.bearing, *(self.load or {}).items(), *(self.displacement or {}).items(), self.damping_time))
+        return hash((self.row, *(self.load or {}).items(), *(self.displacement or {}).items(), self.damping_time))
+
+    @cached_property
+    def bearing(self) -> RollingBearing:
+        """The bearing as it is assembled; raises InputError where the rows make no pair or carry no preload."""
+        pair = PAIRS[self.arrangement](self.row, self.distance) if self.arrangement else self.row
+        return preloaded(pair, self.preload)
 
     @property
     def follows_operation(self) -> bool:

@@ -1,20 +1,18 @@
 """From the tables of rolling bearings to `Mounting`s."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
 from ..errors import InputError, ModelError
-from ..joints import Mounting, preloaded
+from ..joints import Mounting
 from ..joints.bearings import (
     BallBearing,
     RollerBearing,
     RollingBearing,
-    back_to_back,
     catalogue_bearing,
     designations,
-    face_to_face,
-    tandem,
 )
 from .bearing_tables import BallTable, Loads
 from .hints import hint
@@ -23,7 +21,6 @@ from .tables import FileTable
 from .wording import show
 
 T = TypeVar("T")
-_PAIRS = {"back_to_back": back_to_back, "face_to_face": face_to_face, "tandem": tandem}
 
 
 def catalogue_of(file: FileTable, folder: Path) -> Path | None:
@@ -44,16 +41,19 @@ def build_mounting(
         return None
     if table.mirrored:
         row = row.mirrored()
-    if table.arrangement:
-        single, distance = row, table.distance or 0.0
-        row = _named(lambda: _PAIRS[table.arrangement](single, distance), f"{key}.arrangement")
-    arranged = row
-    return Mounting(
-        _named(lambda: preloaded(arranged, table.preload), f"{key}.preload"),
+    mounting = Mounting(
+        row,
+        table.arrangement,
+        table.distance or 0.0,
+        table.preload,
         _by_name(table.load, dofs),
         _by_name(table.displacement, dofs),
         table.damping_time or 0.0 if table.damping is None else None,
     )
+    alone = replace(mounting, preload=0.0)
+    _named(lambda: alone.bearing, f"{key}.arrangement")
+    _named(lambda: mounting.bearing, f"{key}.preload")
+    return mounting
 
 
 def _row(table: BearingTable, key: str, catalogue_file: Path | None) -> RollingBearing | None:

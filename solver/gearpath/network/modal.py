@@ -30,6 +30,7 @@ class ModalNetwork:
     loss_frequency: float = 1000.0  # Hz, where loss factors of joints and their viscous equivalents agree
     source: MeshSource | None = None  # of FMUs only: everything else takes the excitation as an input
     schedule: Schedule | None = None  # of FMUs only: everything else takes the joints as they are
+    decided: frozenset[str] = frozenset()  # of FMUs only: matrices, as bearing_1.stiffness, that their design decides
 
     @property
     def damping(self) -> Real:

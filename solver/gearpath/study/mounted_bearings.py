@@ -90,6 +90,6 @@ def _turned(system: System, part: float) -> System:
     joints = dict(system.joints)
     for name, joint in system.joints.items():
         if joint.mounting is not None:
-            mounting = replace(joint.mounting, bearing=joint.mounting.bearing._shifted(part))
+            mounting = replace(joint.mounting, row=joint.mounting.row._shifted(part))
             joints[name] = replace(joint, mounting=mounting)
     return replace(system, joints=joints)
