@@ -72,7 +72,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
     for (size_t i = 0; i < nRequiredIntermediateVariables; i++) {
         const unsigned int reference = requiredIntermediateVariables[i];
         const GpModel *m = &s->core->model;
-        if (reference < m->variables && gp_role(m->variable[reference].kind) != GP_IS_PARAMETER) continue;
+        if (reference < m->variables && gp_role(m, m->variable + reference) != GP_IS_PARAMETER) continue;
         gp_refuse(s->core, reference,
                   reference < m->variables ? " is no input, output or state, so it cannot be an intermediate variable."
                                            : " does not exist.");

@@ -1,6 +1,7 @@
 /* Directional and adjoint derivatives of an instance (declared in gp_instance.h). */
 #include "gp_instance.h"
 #include "gp_linalg.h"
+#include "gp_schedule.h"
 
 /* Adds `seed` of element i of a variable to the direction. */
 static int add_seed(GpInstance *p, unsigned int reference, size_t i, double seed) {
@@ -9,6 +10,8 @@ static int add_seed(GpInstance *p, unsigned int reference, size_t i, double seed
     const GpVariable *v = m->variable + reference;
     const GpJoint *joint = m->joint + (v->a < m->joints ? v->a : 0);
     const size_t entry = joint->block + v->b * joint->size + v->c, mirror = joint->block + v->c * joint->size + v->b;
+    if (gp_schedule_decides(m, v))
+        return gp_refuse(p, reference, " follows the input operation.torque: take the derivative by that.");
     switch (v->kind) {
     case GP_INPUT: t->input[v->a] += seed; return 0;
     case GP_FREQUENCY: t->frequency += seed; return 0;
@@ -30,6 +33,7 @@ static int add_seed(GpInstance *p, unsigned int reference, size_t i, double seed
     case GP_STIFFNESS_MATRIX: t->K[joint->block + i] += seed; break;
     case GP_DAMPING_MATRIX: t->C[joint->block + i] += seed; break;
     case GP_MODAL_DAMPING: t->zeta[v->a] += seed; break;
+    case GP_TORQUE: gp_schedule_tangent(m, p->torque, seed, t->K, t->C); break;
     default: return gp_refuse(p, reference, " is neither an input, a parameter nor a state: no derivative is taken by it.");
     }
     t->of_parameters = 1;
@@ -84,6 +88,11 @@ static int change_of(GpInstance *p, unsigned int reference, const GpVariable *v,
     const GpTangent *t = &p->tangent;
     const size_t N = m->modes;
     size_t row;
+    if (gp_schedule_decides(m, v)) { /* an entry that follows the torque */
+        const GpJoint *joint = m->joint + v->a;
+        *change = (v->kind == GP_STIFFNESS ? t->K : t->C)[joint->block + v->b * joint->size + v->c];
+        return 0;
+    }
     switch (v->kind) {
     case GP_OUTPUT: *change = gp_tangent_output(t, m, gp_motion(p), v->a); return 0;
     case GP_PORT_FORCE: *change = t->motion.g[m->joint[v->a].first + v->b]; return 0;

@@ -6,6 +6,7 @@
 #include "gp_clock.h"
 #include "gp_linalg.h"
 #include "gp_memory.h"
+#include "gp_schedule.h"
 #include "gp_waves.h"
 
 /* The first receiver velocity that is this row, or `none`. */
@@ -96,7 +97,8 @@ void gp_instance_reset(GpInstance *p) {
     p->source.speed = m->speed;
     p->source.speed_slope = p->source.turns = p->source.part = p->source.rest = 0;
     p->frequency = m->frequency;
-    p->frequency_slope = 0;
+    p->torque = p->used_torque = m->start_torque;
+    p->frequency_slope = p->torque_slope = 0;
     p->time = 0;
     p->steps = 0;
     p->begun = p->jumped = 0;
@@ -169,20 +171,22 @@ void gp_set_damping(GpInstance *p, size_t group, double zeta) {
     gp_touch(p);
 }
 
-/* Takes over the matrices of joint j, or goes back to the last valid ones with a sentence. */
+/* Takes over the matrices of joint j, or goes back to the last valid ones with a sentence. What follows the torque is
+   positive semidefinite and taken over in any case. */
 static int use_joint(GpInstance *p, size_t j) {
     const GpModel *m = &p->model;
     const size_t at = m->joint[j].block, d = m->joint[j].size;
+    const uint32_t follows = m->joint[j].follows;
     unsigned char used[6];
-    const int stiff = gp_semidefinite(p->K + at, d, p->work, used);
-    const int damped = gp_semidefinite(p->C + at, d, p->work, used);
+    const int stiff = follows & GP_FOLLOWS_STIFFNESS || gp_semidefinite(p->K + at, d, p->work, used);
+    const int damped = follows & GP_FOLLOWS_DAMPING || gp_semidefinite(p->C + at, d, p->work, used);
     p->changed[j] = 0;
-    if (stiff && damped) {
+    if (follows || (stiff && damped)) {
         copy(p->valid_K + at, p->K + at, d * d);
-        copy(p->valid_C + at, p->C + at, d * d);
+        if (damped) copy(p->valid_C + at, p->C + at, d * d);
         p->system_ready = 0;
-        return 0;
     }
+    if (stiff && damped) return 0;
     copy(p->K + at, p->valid_K + at, d * d);
     copy(p->C + at, p->valid_C + at, d * d);
     gp_text_add(&p->message, p->message.length ? " " : "");
@@ -207,6 +211,7 @@ int gp_use_parameters(GpInstance *p) {
     gp_text_clear(&p->message);
     for (size_t j = 0; j < m->joints; j++)
         if (p->changed[j] && use_joint(p, j)) failed = -1;
+    p->used_torque = p->torque;
     if (!p->system_ready) {
         copy(p->valid_zeta, p->zeta, m->groups);
         p->as_exported = has_start_parameters(p);
@@ -338,7 +343,8 @@ static void commit(GpInstance *p, double *to, double h, double frequency) {
     if (p->model.source_load != GP_NONE) gp_source_advance(&p->source, h);
     if (frequency != p->frequency) p->response_ready = 0;
     p->frequency = frequency;
-    p->frequency_slope = 0;
+    if (p->torque_slope != 0) gp_set_torque(p, p->torque + h * p->torque_slope);
+    p->frequency_slope = p->torque_slope = 0;
     p->states_ready = 0;
     p->begun = 1;
     gp_touch(p);
@@ -354,6 +360,8 @@ int gp_step(GpInstance *p, double time, double h) {
     const GpDiscrete *d;
     if (gp_use_parameters(p)) return -1;
     if (!gp_finite(frequency)) return fail_step(p, "The input frequency overflows within this step.");
+    if (!gp_finite(p->torque + h * p->torque_slope))
+        return fail_step(p, "The input operation.torque overflows within this step.");
     if (tones == GP_NONE)
         return fail_step(p, "The gear mesh makes more than 200,000 cycles within this step; use a smaller step.");
     if (p->model.source_load != GP_NONE && !gp_source_can_advance(&p->source, h))

@@ -27,6 +27,8 @@ typedef struct {
     double *input, *slope;    /* (M) value at the current time, and its derivative over the coming step */
     double frequency;         /* Hz */
     double frequency_slope;   /* Hz/s */
+    double torque, torque_slope; /* N m as set, K and C of joints that follow it belong to it; N m/s */
+    double used_torque;       /* N m, that the valid matrices of these joints belong to */
     GpSource source;          /* with its parameters, its speed and its angle */
     double time;              /* s, as the importer told it; only for the variable `time` */
     /* state, in the form of gp_propagator.h */
@@ -78,9 +80,12 @@ void gp_hold(GpInstance *p); /* ends all slopes */
    happens at once, not when the ratio is next used: by then the inputs may be others. */
 void gp_set_damping(GpInstance *p, size_t group, double zeta);
 
-/* What may be done with variables of a kind. */
+/* Sets the torque, and K and C of the joints that follow it. */
+void gp_set_torque(GpInstance *p, double torque);
+
+/* What may be done with a variable. */
 typedef enum { GP_IS_INPUT = 1, GP_IS_PARAMETER = 2, GP_IS_STATE = 4, GP_IS_RESULT = 8 } GpRole;
-GpRole gp_role(uint32_t kind);
+GpRole gp_role(const GpModel *model, const GpVariable *variable);
 
 /* The value of a scalar variable: 0, or -1 where it cannot be computed. */
 int gp_value(GpInstance *p, const GpVariable *v, double *value);

@@ -3,7 +3,7 @@
    header   magic "GEARPATH", u32 version, u32 0x01020304, u64 file size, u32 CRC-32 of all that follows byte 32,
             u32 zero, char guid[40]
    counts   u32 N, groups, joints, rows, blocks, loads, outputs, variables, excitation, text bytes, tones,
-            source load, pairs, zero, zero, zero
+            source load, pairs, points of the schedule, zero, zero
    sections in the order of `find_sections`: the doubles, the indices, the records, the text */
 #include "gp_model.h"
 
@@ -13,7 +13,7 @@
 #include "gp_crc.h"
 #include "gp_model_check.h"
 
-enum { HEADER = 72, COUNTS = 16, VERSION = 2, LARGEST_COUNT = 1 << 13, LARGEST_FILE = 1 << 30 };
+enum { HEADER = 72, COUNTS = 16, VERSION = 3, LARGEST_COUNT = 1 << 13, LARGEST_TABLE = 1 << 24, LARGEST_FILE = 1 << 30 };
 
 static int refuse(GpText *message, const char *why) {
     gp_text_clear(message);
@@ -67,12 +67,13 @@ static int read_counts(GpModel *m, size_t *text_size) {
     }
     m->modes = n[0], m->groups = n[1], m->joints = n[2], m->rows = n[3], m->blocks = n[4];
     m->loads = n[5], m->outputs = n[6], m->variables = n[7], m->excitation = n[8], *text_size = n[9];
-    m->tones = n[10], m->source_load = n[11], m->pairs = n[12];
+    m->tones = n[10], m->source_load = n[11], m->pairs = n[12], m->points = n[13];
     m->states = 2 * m->modes + (m->source_load != GP_NONE);
     if (!m->modes || !m->joints || !m->rows || !m->loads || m->excitation >= m->loads) return -1;
     if (m->pairs && m->pairs != m->modes) return -1;
     if (m->source_load == GP_NONE ? m->tones != 0 : m->source_load >= m->loads) return -1;
-    return n[13] || n[14] || n[15] ? -1 : 0;
+    if (m->points && m->blocks > LARGEST_TABLE / m->points) return -1;
+    return n[14] || n[15] ? -1 : 0;
 }
 
 /* The next section of `count` items: its start, or NULL behind the end of the file. */
@@ -89,8 +90,8 @@ static int find_sections(GpModel *m, size_t size, size_t text_size) {
     const double *starts;
 #define GP_SECTION(field, count, item) \
     if (!((field) = section(m, &at, size, count, item))) return -1
-    GP_SECTION(starts, 3, 8);
-    m->frequency = starts[0], m->speed = starts[1], m->teeth = starts[2];
+    GP_SECTION(starts, 4, 8);
+    m->frequency = starts[0], m->speed = starts[1], m->teeth = starts[2], m->start_torque = starts[3];
     GP_SECTION(m->eigenvalues, m->modes, 8);
     GP_SECTION(m->scale, m->modes, 8);
     GP_SECTION(m->nominal, m->modes, 8);
@@ -105,6 +106,9 @@ static int find_sections(GpModel *m, size_t size, size_t text_size) {
     GP_SECTION(m->pole, m->pairs, sizeof(GpPole));
     GP_SECTION(m->shape, 2 * m->pairs * m->modes, 8);
     GP_SECTION(m->tone, m->tones, sizeof(GpTone));
+    GP_SECTION(m->torque, m->points, 8);
+    GP_SECTION(m->stiffness_at, m->points * m->blocks, 8);
+    GP_SECTION(m->damping_at, m->points * m->blocks, 8);
     GP_SECTION(m->pair_kind, m->pairs, 4);
     GP_SECTION(m->group, m->modes, 4);
     GP_SECTION(m->is_error, m->loads, 4);

@@ -39,6 +39,7 @@ enum {
     GP_ENTRY_C,
     GP_ENTRY_D,
     GP_TIME,            /* the independent variable */
+    GP_TORQUE,          /* that stiffness is scheduled on */
     GP_SCALAR_KINDS,
     /* kinds of arrays, row-major: elements of the scalar kind in brackets */
     GP_STIFFNESS_MATRIX = 64, /* joint a (GP_STIFFNESS) */
@@ -67,7 +68,7 @@ typedef struct {
     uint32_t block; /* where its d x d matrix starts in the packed matrices */
     uint32_t path;  /* 1 where it counts as a power flow path */
     uint32_t name;  /* offset of its name in `text` */
-    uint32_t zero;  /* reserved, 0 */
+    uint32_t follows; /* what follows the torque, see gp_schedule.h */
 } GpJoint;
 
 typedef struct {
@@ -111,11 +112,13 @@ typedef struct {
     size_t excitation;    /* the load that frequency outputs refer to */
     size_t tones;         /* of the gear mesh source */
     size_t source_load;   /* the transmission error that the source adds to, or GP_NONE */
+    size_t points;        /* of the schedule over the torque, 0 where there is none */
     size_t pairs;         /* N where the modal form of the coupled system is known, else 0 */
     size_t states;        /* 2 N, and one more for the shaft angle of a source */
     double frequency;     /* start value of the frequency input, Hz */
     double speed;         /* start value of the shaft speed, rev/min */
     double teeth;         /* start value of the tooth count */
+    double start_torque;  /* start value of the torque, N m */
     const double *eigenvalues;     /* (N) L, (rad/s)^2, 0 where rigid */
     const double *scale;           /* (N) w: sqrt(L), or a fixed value where rigid, rad/s */
     const double *nominal;         /* (N) of the two states of each mode */
@@ -130,6 +133,9 @@ typedef struct {
     const GpPole *pole;            /* (pairs) */
     const double *shape;           /* (pairs, 2, N) modal displacements: real and imaginary part, or of two real poles */
     const GpTone *tone;            /* (tones) */
+    const double *torque;          /* (points) N m, increasing */
+    const double *stiffness_at;    /* (points, blocks) at each torque, 0 where a joint does not follow */
+    const double *damping_at;      /* (points, blocks) likewise */
     const uint32_t *pair_kind;     /* (pairs) GP_OSCILLATING ... */
     const uint32_t *group;         /* (N) damping group of each mode, or GP_NONE */
     const uint32_t *is_error;      /* (M) 1 where the load is a transmission error */

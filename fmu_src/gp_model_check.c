@@ -1,6 +1,7 @@
 #include "gp_model_check.h"
 
 #include "gp_linalg.h"
+#include "gp_schedule.h"
 
 static int all_finite(const double *first, const double *end) {
     for (; first < end; first++)
@@ -9,9 +10,10 @@ static int all_finite(const double *first, const double *end) {
 }
 
 static int numbers_are_good(const GpModel *m) {
-    /* the doubles stand one behind another, from the eigenvalues to the tones */
-    if (!all_finite(m->eigenvalues, (const double *)(m->tone + m->tones))) return 0;
+    /* the doubles stand one behind another, from the eigenvalues to the schedule */
+    if (!all_finite(m->eigenvalues, m->damping_at + m->points * m->blocks)) return 0;
     if (!gp_finite(m->frequency) || m->frequency <= 0 || !gp_finite(m->speed) || !gp_finite(m->teeth)) return 0;
+    if (!gp_finite(m->start_torque)) return 0;
     for (size_t r = 0; r < m->modes; r++) {
         if (m->eigenvalues[r] < 0 || !(m->scale[r] > 0) || !(m->nominal[r] > 0)) return 0;
         if (m->group[r] != GP_NONE && m->group[r] >= m->groups) return 0;
@@ -51,7 +53,7 @@ static int joints_are_good(const GpModel *m, size_t text_size) {
     for (size_t i = 0; i < m->joints; i++) {
         const GpJoint *j = m->joint + i;
         const size_t d = j->size;
-        if (j->first != row || j->block != block || d == 0 || d > 6 || j->path > 1 || j->zero) return 0;
+        if (j->first != row || j->block != block || d == 0 || d > 6 || j->path > 1) return 0;
         if (j->name >= text_size || row + d > m->rows || block + d * d > m->blocks) return 0;
         for (size_t k = 0; k < d * d; k++) {
             const size_t mirror = block + k % d * d + k / d;
@@ -85,6 +87,7 @@ static int variable_is_good(const GpModel *m, const GpVariable *v) {
     case GP_STIFFNESS:
     case GP_DAMPING: return v->a < m->joints && v->b <= v->c && v->c < m->joint[v->a].size;
     case GP_MODAL_DAMPING: return v->a < m->groups && alone;
+    case GP_TORQUE: return m->points && !v->a && alone;
     case GP_TONE_AMPLITUDE:
     case GP_TONE_PHASE:
     case GP_ORDER_FREQUENCY:
@@ -117,6 +120,7 @@ const char *gp_model_check(const GpModel *m, size_t text_size) {
     if (!text_size || m->text[text_size - 1]) return "its text is not terminated.";
     if (!numbers_are_good(m)) return "a number is out of range.";
     if (!joints_are_good(m, text_size)) return "a joint is wrong.";
+    if (gp_schedule_check(m)) return gp_schedule_check(m);
     if (!outputs_are_good(m)) return "an output is wrong.";
     if (!pairs_are_good(m)) return "a mode of the coupled system is wrong.";
     if (!source_is_good(m)) return "the gear mesh source is wrong.";

@@ -5,6 +5,7 @@
 
 #include "gp_linalg.h"
 #include "gp_path.h"
+#include "gp_schedule.h"
 
 static const int RUNNING = GP_INITIALISING | GP_EVENT | GP_CONTINUOUS | GP_STEPPING | GP_INTERMEDIATE | GP_TERMINATED;
 
@@ -147,7 +148,9 @@ static int check_roles(GpSession *s, const char *function, const unsigned int *r
     for (size_t i = 0; i < count; i++) {
         GpRole role;
         if (reference[i] >= m->variables) return passed(s, function, gp_refuse(s->core, reference[i], " does not exist."));
-        role = gp_role(m->variable[reference[i]].kind);
+        if (gp_schedule_decides(m, m->variable + reference[i]))
+            return passed(s, function, gp_refuse(s->core, reference[i], GP_DECIDED));
+        role = gp_role(m, m->variable + reference[i]);
         if (role == GP_IS_RESULT)
             return passed(s, function, gp_refuse(s->core, reference[i], " is a result and cannot be set."));
         if ((int)role & settable(s)) continue;

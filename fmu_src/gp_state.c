@@ -4,8 +4,9 @@
 
 #include "gp_crc.h"
 #include "gp_linalg.h"
+#include "gp_schedule.h"
 
-enum { HEADER = 72, VERSION = 1, SINGLE = 13, SCALARS = SINGLE + 2 * GP_STEP_SIZES };
+enum { HEADER = 72, VERSION = 2, SINGLE = 16, SCALARS = SINGLE + 2 * GP_STEP_SIZES };
 
 static int refuse(GpInstance *p, const char *why) {
     gp_text_clear(&p->message);
@@ -59,7 +60,7 @@ void gp_state_write(GpInstance *p, const double *extra, unsigned char *bytes) {
     const double scalars[SINGLE] = {p->frequency,          p->frequency_slope, p->source.teeth, p->source.speed,
                                     p->source.speed_slope, p->source.turns,    p->source.part,  p->time,
                                     p->modal,              !p->system_ready,   p->begun,        (double)p->steps,
-                                    p->source.rest};
+                                    p->source.rest,        p->torque,          p->torque_slope, p->used_torque};
     unsigned char *at = bytes + HEADER;
     uint32_t crc;
     size_t count;
@@ -110,15 +111,16 @@ static int scalars_are_good(const GpInstance *p, const double *s) {
     return s[8] == 0 || m->pairs;
 }
 
-/* Whether the packed matrices are symmetric, and (where they are in use) positive semidefinite. */
-static int matrices_are_good(const GpInstance *p, const double *packed, int in_use) {
+/* Whether the packed matrices are symmetric, and (where they are in use) positive semidefinite, as those that follow
+   the torque are. */
+static int matrices_are_good(const GpInstance *p, const double *packed, int in_use, uint32_t follow) {
     unsigned char used[6];
     for (size_t j = 0; j < p->model.joints; j++) {
         const size_t d = p->model.joint[j].size;
         const double *A = packed + p->model.joint[j].block;
         for (size_t k = 0; k < d * d; k++)
             if (A[k] != A[k % d * d + k / d]) return 0;
-        if (in_use && !gp_semidefinite(A, d, p->work, used)) return 0;
+        if (in_use && !(p->model.joint[j].follows & follow) && !gp_semidefinite(A, d, p->work, used)) return 0;
     }
     return 1;
 }
@@ -143,7 +145,11 @@ int gp_state_check(GpInstance *p, const unsigned char *bytes, size_t size) {
     blocks = p->state_work;
     zeta = blocks + 4 * m->blocks;
     good = good && scalars_are_good(p, value);
-    for (int i = 0; i < 4; i++) good = good && matrices_are_good(p, blocks + (size_t)i * m->blocks, i > 1);
+    for (int i = 0; i < 4; i++)
+        good = good && matrices_are_good(p, blocks + (size_t)i * m->blocks, i > 1,
+                                         i % 2 ? GP_FOLLOWS_DAMPING : GP_FOLLOWS_STIFFNESS);
+    good = good && gp_schedule_agrees(m, value[13], blocks, blocks + m->blocks) &&
+           gp_schedule_agrees(m, value[15], blocks + 2 * m->blocks, blocks + 3 * m->blocks);
     good = good && ratios_are_good(zeta, 2 * m->groups);
     if (good && value[8] != 0) /* modal coordinates belong to the start parameters */
         good = !memcmp(blocks + 2 * m->blocks, m->stiffness, m->blocks * sizeof(double)) &&
@@ -173,7 +179,10 @@ int gp_state_read(GpInstance *p, const unsigned char *bytes, size_t size, double
     p->source.teeth = value[2], p->source.speed = value[3], p->source.speed_slope = value[4];
     p->source.turns = value[5], p->source.part = value[6], p->source.rest = value[12];
     p->time = value[7], p->modal = value[8] != 0, p->begun = value[10] != 0;
+    p->torque = value[13], p->torque_slope = value[14], p->used_torque = value[15];
     p->steps = (unsigned long long)value[11];
+    if (gp_schedule_clamped(m, p->torque) != gp_schedule_clamped(m, p->used_torque))
+        for (size_t j = 0; j < m->joints; j++) p->changed[j] |= m->joint[j].follows != 0;
     for (size_t i = 0; i < GP_STEP_SIZES; i++) {
         GpDiscrete *d = p->discrete + i;
         d->ready = same && d->ready && d->h == value[SINGLE + 2 * i];

@@ -4,6 +4,7 @@
 #include "gp_instance.h"
 #include "gp_linalg.h"
 #include "gp_observe.h"
+#include "gp_schedule.h"
 
 int gp_refuse(GpInstance *p, unsigned int reference, const char *rest) {
     GpText *t = &p->message;
@@ -21,11 +22,12 @@ int gp_refuse(GpInstance *p, unsigned int reference, const char *rest) {
     return -1;
 }
 
-GpRole gp_role(uint32_t kind) {
+GpRole gp_role(const GpModel *m, const GpVariable *v) {
     static const unsigned char role[GP_ARRAY_KINDS] = {
         [GP_INPUT] = GP_IS_INPUT,
         [GP_FREQUENCY] = GP_IS_INPUT,
         [GP_SPEED] = GP_IS_INPUT,
+        [GP_TORQUE] = GP_IS_INPUT,
         [GP_STIFFNESS] = GP_IS_PARAMETER,
         [GP_DAMPING] = GP_IS_PARAMETER,
         [GP_STIFFNESS_MATRIX] = GP_IS_PARAMETER,
@@ -37,7 +39,7 @@ GpRole gp_role(uint32_t kind) {
         [GP_STATE] = GP_IS_STATE,
         [GP_STATES] = GP_IS_STATE,
     };
-    return role[kind] ? (GpRole)role[kind] : GP_IS_RESULT;
+    return role[v->kind] && !gp_schedule_decides(m, v) ? (GpRole)role[v->kind] : GP_IS_RESULT;
 }
 
 static int is_scalar(const GpVariable *v) { return v->kind < GP_SCALAR_KINDS; }
@@ -64,7 +66,7 @@ static int check_values(GpInstance *p, const unsigned int *reference, size_t cou
         if (reference[i] >= m->variables) return gp_refuse(p, reference[i], " does not exist.");
         v = m->variable + reference[i];
         wanted += size_of(m, v);
-        *roles |= (int)gp_role(v->kind);
+        *roles |= (int)gp_role(m, v);
     }
     if (wanted == values) return 0;
     gp_text_clear(&p->message);
@@ -82,6 +84,7 @@ static int check_scalar(GpInstance *p, unsigned int reference, const GpVariable 
     case GP_INPUT:
     case GP_FREQUENCY:
     case GP_SPEED:
+    case GP_TORQUE:
     case GP_TONE_AMPLITUDE:
     case GP_TONE_PHASE:
     case GP_STATE: return 0;
@@ -118,6 +121,7 @@ static int check_set(GpInstance *p, unsigned int reference, const double *value)
     const GpModel *m = &p->model;
     const GpVariable *v = m->variable + reference;
     size_t size;
+    if (gp_schedule_decides(m, v)) return gp_refuse(p, reference, GP_DECIDED);
     if (is_scalar(v)) return check_scalar(p, reference, v, *value);
     size = gp_variable_size(m, v);
     for (size_t i = 0; i < size; i++) {
@@ -169,6 +173,7 @@ static void apply_set(GpInstance *p, const GpVariable *v, double value) {
     case GP_SPEED:
         p->source.speed = value;
         break;
+    case GP_TORQUE: gp_set_torque(p, value); break;
     case GP_STIFFNESS: set_entry(p, v, p->K, value); break;
     case GP_DAMPING: set_entry(p, v, p->C, value); break;
     case GP_TEETH: change(p, &p->source.teeth, value); break;
@@ -184,7 +189,7 @@ static void apply(GpInstance *p, const unsigned int *reference, size_t count, co
     for (size_t i = 0; i < count; i++) {
         const GpVariable *v = p->model.variable + reference[i];
         const size_t size = size_of(&p->model, v);
-        const int chosen = (gp_role(v->kind) == GP_IS_INPUT) == inputs;
+        const int chosen = (gp_role(&p->model, v) == GP_IS_INPUT) == inputs;
         for (size_t k = 0; k < size; k++, value++) {
             const GpVariable element = gp_variable_element(&p->model, v, k);
             if (chosen) apply_set(p, &element, *value);
@@ -210,7 +215,7 @@ int gp_set_slope(GpInstance *p, const unsigned int *reference, size_t count, con
                  const double *value) {
     for (size_t i = 0; i < count; i++) {
         if (reference[i] >= p->model.variables) return gp_refuse(p, reference[i], " does not exist.");
-        if (gp_role(p->model.variable[reference[i]].kind) != GP_IS_INPUT)
+        if (gp_role(&p->model, p->model.variable + reference[i]) != GP_IS_INPUT)
             return gp_refuse(p, reference[i], " is not an input, so that it has no input derivative.");
         if (order[i] != 1) return gp_refuse(p, reference[i], " takes an input derivative of order 1 only.");
         if (!gp_finite(value[i])) return gp_refuse(p, reference[i], " must be given a finite input derivative.");
@@ -221,6 +226,8 @@ int gp_set_slope(GpInstance *p, const unsigned int *reference, size_t count, con
             p->slope[v->a] = value[i];
         else if (v->kind == GP_SPEED)
             p->source.speed_slope = value[i];
+        else if (v->kind == GP_TORQUE)
+            p->torque_slope = value[i];
         else
             p->frequency_slope = value[i];
     }
@@ -229,7 +236,7 @@ int gp_set_slope(GpInstance *p, const unsigned int *reference, size_t count, con
 
 void gp_hold(GpInstance *p) {
     memset(p->slope, 0, p->model.loads * sizeof *p->slope);
-    p->source.speed_slope = p->frequency_slope = 0;
+    p->source.speed_slope = p->frequency_slope = p->torque_slope = 0;
 }
 
 static double derivative_value(GpInstance *p, size_t state) {
@@ -295,6 +302,7 @@ int gp_value(GpInstance *p, const GpVariable *v, double *value) {
     case GP_INPUT: *value = p->input[v->a]; return 0;
     case GP_FREQUENCY: *value = p->frequency; return 0;
     case GP_SPEED: *value = p->source.speed; return 0;
+    case GP_TORQUE: *value = p->torque; return 0;
     case GP_STIFFNESS: *value = joint_entry(p, p->K, v); return 0;
     case GP_DAMPING: *value = joint_entry(p, p->C, v); return 0;
     case GP_MODAL_DAMPING: *value = p->zeta[v->a]; return 0;

@@ -1,4 +1,4 @@
-"""The command line: sweep, fmu, validate, report, paper, schema.
+"""The command line: sweep, fmu, validate, report, bearing, paper, schema.
 
 Exit codes: 0 done, 1 a check failed, 2 bad input.
 """
@@ -76,6 +76,9 @@ def fmu(
         str, typer.Option(help="native (runs without Python) or python (design parameters too).")
     ] = "native",
     fmi: Annotated[str, typer.Option(help="Version of FMI, 2.0 or 3.0.")] = "2.0",
+    torques: Annotated[
+        str, typer.Option(metavar="N M,...", help="Stiffness follows operation.torque between these, as 10,50,100.")
+    ] = "",
     set_: Settings = [],  # noqa: B006
     json: Json = False,
 ) -> None:
@@ -83,8 +86,12 @@ def fmu(
     from . import api
 
     fmi = {"2": "2.0", "3": "3.0"}.get(fmi, fmi)
+    try:
+        schedule = [float(torque) for torque in torques.split(",")] if torques else None
+    except ValueError as error:
+        raise InputError(f"--torques {torques}: are no numbers; write them in N m, as --torques 10,50,100") from error
     with warnings.catch_warnings() if json else console.notes():
-        path = api.export_fmu(console.load_with(model, set_), output, fmi=fmi, kind=kind)
+        path = api.export_fmu(console.load_with(model, set_), output, fmi=fmi, kind=kind, schedule=schedule)
     if json:
         console.print_json({"fmu": path, "kind": kind, "fmi": fmi, "bytes": path.stat().st_size})
     else:
@@ -142,6 +149,42 @@ def report(
     else:
         console.out.print(f"wrote {written}", markup=False)
     raise typer.Exit(console.DONE if passed else console.CHECK_FAILED)
+
+
+@app.command()
+def bearing(
+    target: Annotated[
+        str | None,
+        typer.Argument(metavar="TARGET", help="Designation of the catalogue, such as 7210B-like, or a model file."),
+    ] = None,
+    load: Annotated[
+        list[str], typer.Option(metavar="DOF=N", help="Load, such as uz=500 (N, N m); not named: held.")
+    ] = [],  # noqa: B006
+    displacement: Annotated[
+        list[str], typer.Option(metavar="DOF=M", help="Displacement instead, such as uz=1e-5 (m, rad).")
+    ] = [],  # noqa: B006
+    preload: Annotated[float | None, typer.Option(metavar="N", help="Axial force that presses it together.")] = None,
+    mirrored: Annotated[bool, typer.Option("--mirrored", help="Facing the other way.")] = False,
+    arrangement: Annotated[str, typer.Option(help="A pair: back_to_back, face_to_face or tandem.")] = "",
+    distance: Annotated[float | None, typer.Option(metavar="M", help="Distance of the pair's rows.")] = None,
+    speed: Annotated[float | None, typer.Option(metavar="REV/MIN", help="To be told of centrifugal forces.")] = None,
+    phases: Annotated[bool, typer.Option("--phases", help="Average and spread over the cage's positions.")] = False,
+    joint: Annotated[str | None, typer.Option(metavar="NAME", help="Only this joint of the model.")] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write this HTML page too.")] = None,
+    list_: Annotated[bool, typer.Option("--list", help="Show the catalogue with its sources.")] = False,
+    catalogue_file: Annotated[Path | None, typer.Option(metavar="FILE", help="Own entries (TOML).")] = None,
+    set_: Settings = [],  # noqa: B006
+    json: Json = False,
+) -> None:
+    """Stiffness, load distribution and limits of a rolling bearing, or of those of a model at its operating point."""
+    from .study.bearing_command import Order, run
+
+    if list_ and target is not None:
+        raise InputError(f"--list shows the whole catalogue; leave {target} out")
+    order = Order(
+        target, load, displacement, preload, mirrored, arrangement, distance, speed, phases, joint, set_, catalogue_file
+    )
+    run(order, output, json)
 
 
 @app.command()

@@ -65,7 +65,7 @@ def _state(small: SmallFmu) -> bytes:
 def _sequences(rng: random.Random) -> list[bytes]:
     """Sets, steps and gets from every starting phase on every model, and states kept and restored in between."""
     found = []
-    for start in range(24):
+    for start in range(32):
         calls = [
             bytes([11, 0, 2, 0, 0, 0, 1, 3, 0, 4, 4, 4, 4]),
             bytes([6, 0, 0, 0, 0]),

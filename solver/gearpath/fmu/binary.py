@@ -16,7 +16,7 @@ from ..numerics.arrays import Real
 from .native_table import state_nominals
 from .variables import Variable
 
-MAGIC, VERSION, BYTE_ORDER = b"GEARPATH", 2, 0x01020304
+MAGIC, VERSION, BYTE_ORDER = b"GEARPATH", 3, 0x01020304
 NONE = 0x7FFFFFFF  # "no such index", GP_NONE
 QUANTITIES = ("displacement", "velocity", "acceleration", "force", "power")  # GP_DISPLACEMENT ...
 LARGEST_COUNT = 1 << 13  # of modes, joints, loads ...: what the runtime accepts
@@ -34,7 +34,7 @@ def payload(network: ModalNetwork, variables: Sequence[Variable], frequency: flo
     names, text = _names([joint.name for joint in network.joints] + [variable.name for variable in variables])
     counts = _counts(network, len(variables), len(text), modes is not None)
     parts = [struct.pack("<16I", *counts)]
-    form = [*_modal_form(modes), *_tones(network)]
+    form = [*_modal_form(modes), *_tones(network), *_schedule(network)]
     _check_finite(form)
     for array in (*reals, *form):
         parts.append(np.ascontiguousarray(array, dtype="<f8").tobytes())
@@ -67,17 +67,24 @@ def _counts(network: ModalNetwork, variables: int, text: int, has_modes: bool) -
         len(source.tones) if source else 0,
         loads.index(source.load) if source else NONE,
         N if has_modes else 0,
-        0,
+        len(network.schedule.torques) if network.schedule else 0,
         0,
         0,
     )
 
 
 def _reals(network: ModalNetwork, frequency: float) -> list[Real]:
-    N, source = len(network.eigenvalues), network.source
+    N, source, schedule = len(network.eigenvalues), network.source, network.schedule
     zero = np.zeros(N)
     return [
-        np.array([frequency, source.speed if source else 0.0, source.teeth if source else 1.0]),
+        np.array(
+            [
+                frequency,
+                source.speed if source else 0.0,
+                source.teeth if source else 1.0,
+                schedule.first if schedule else 0.0,
+            ]
+        ),
         network.eigenvalues,
         state_scale(network),
         state_nominals(network),
@@ -103,6 +110,33 @@ def _tones(network: ModalNetwork) -> list[Real]:
     return [np.array([(t.harmonic, t.shift, t.amplitude, t.phase) for t in tones]).reshape(-1, 4)]
 
 
+def _schedule(network: ModalNetwork) -> list[Real]:
+    """Torques, then K and C of all joints at each, zero where they do not follow."""
+    schedule = network.schedule
+    if schedule is None:
+        return []
+    tables = [np.asarray(schedule.torques, float)]
+    for matrices in (schedule.stiffness, schedule.damping):
+        rows = [
+            [
+                _symmetric(matrices[joint.name][i]).ravel()
+                if joint.name in matrices
+                else np.zeros(len(joint.dofs) ** 2)
+                for joint in network.joints
+            ]
+            for i in range(len(schedule.torques))
+        ]
+        tables.append(np.array([np.concatenate(row) for row in rows]))
+    return tables
+
+
+def _follows(network: ModalNetwork, name: str) -> int:
+    """What of a joint follows the torque: GP_FOLLOWS_STIFFNESS and GP_FOLLOWS_DAMPING."""
+    if network.schedule is None:
+        return 0
+    return (name in network.schedule.stiffness) + 2 * (name in network.schedule.damping)
+
+
 def _indices(network: ModalNetwork, variables: Sequence[Variable], names: Sequence[int]) -> list[ArrayLike]:
     """The index sections behind the kinds of mode pairs."""
     sizes = [len(joint.dofs) for joint in network.joints]
@@ -113,7 +147,7 @@ def _indices(network: ModalNetwork, variables: Sequence[Variable], names: Sequen
         [load.is_transmission_error for load in network.loads],
         [is_rotation(dof) for joint in network.joints for dof in joint.dofs],
         [
-            (starts[j], sizes[j], block_starts[j], joint.name in network.paths, names[j], 0)
+            (starts[j], sizes[j], block_starts[j], joint.name in network.paths, names[j], _follows(network, joint.name))
             for j, joint in enumerate(network.joints)
         ],
         [
@@ -159,3 +193,22 @@ def _names(names: Sequence[str]) -> tuple[list[int], bytes]:
 
 def _padded(part: bytes) -> bytes:
     return part + b"\0" * (-len(part) % 8)
+
+
+def scheduled_torques(content: bytes) -> Real:
+    """The torques (T,), N m, that model.bin holds matrices for; none without a schedule.
+
+    Raises:
+        InputError: it is cut short or of another version.
+    """
+    wrong = InputError("resources/model.bin cannot be read; unpack or export the FMU again")
+    if len(content) < 136 or content[:8] != MAGIC or struct.unpack_from("<I", content, 8)[0] != VERSION:
+        raise wrong
+    n = struct.unpack_from("<16I", content, 72)
+    modes, groups, _, rows, blocks, loads, outputs = n[:7]
+    tones, pairs, points = n[10], n[12], n[13]
+    before = 4 + 3 * modes + groups + 2 * rows * modes + 2 * blocks + 2 * loads * modes + outputs * modes
+    start = 136 + 8 * (before + 4 * pairs + 2 * pairs * modes + 4 * tones)
+    if start + 8 * points > len(content):
+        raise wrong
+    return np.frombuffer(content, "<f8", points, start).astype(float)

@@ -1,12 +1,15 @@
 """Which inputs, states and parameters an unknown of the FMU depends on at once."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..network.modal import ModalNetwork
 from ..network.records import JointRows, Output
+from ..numerics.arrays import Real
 
+TORQUE = "operation.torque"  # the input that decides scheduled matrices
 Mask = np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
 
 
@@ -51,8 +54,12 @@ class Dependencies:
             self.groups[f"{name}.modal_damping"] = mask & self.elastic
         self.damped: Mask = np.any([*self.groups.values(), np.zeros(N, bool)], axis=0)
         self.acts: dict[str, Mask] = {joint.name: joint.relative != 0 for joint in network.joints}  # (rows, N)
-        self.touched: dict[str, Mask] = {name: np.any(acts, axis=0) for name, acts in self.acts.items()}
         self.joints = {joint.name: joint for joint in network.joints}
+        schedule = network.schedule
+        self.tables: dict[str, Mapping[str, Real]] = {  # of the joints that follow the torque
+            "stiffness": schedule.stiffness if schedule else {},
+            "damping": schedule.damping if schedule else {},
+        }
         self._forces: dict[tuple[str, int | None], _Found] = {}  # what was found for each, as it is asked for often
 
     def of_output(self, output: Output) -> Unknown:
@@ -113,11 +120,15 @@ class Dependencies:
                 found.parameters |= dampers
 
     def _force(self, found: "_Found", joint: JointRows, dof: int | None) -> None:
-        """g = K P q + C P q': all the joint's rows, as K and C couple them, but one row of entries only."""
+        """g = K P q + C P q': all the joint's rows, as K and C couple them, but one row of entries only.
+
+        Zeros in the tables of a schedule stay zero.
+        """
         if (joint.name, dof) not in self._forces:
             force = self._forces[joint.name, dof] = _Found(len(found.x))
-            self._rates(force, self.touched[joint.name])
-            force.x |= self.touched[joint.name]
+            acts = self.acts[joint.name]
+            self._rates(force, np.asarray(acts[self._coupled(joint, "damping", dof)].any(axis=0)))
+            force.x |= acts[self._coupled(joint, "stiffness", dof)].any(axis=0)
             for what in ("stiffness", "damping"):
                 if not self.at_rest or (force.inputs and what == "damping"):
                     force.parameters |= self._entries(joint, what, dof)
@@ -142,7 +153,18 @@ class Dependencies:
             for dof in np.flatnonzero((self.acts[joint.name] & modes).any(axis=1)):
                 self._force(found, joint, int(dof))
 
+    def _coupled(self, joint: JointRows, what: str, dof: int | None) -> Mask:
+        """The degrees of freedom whose motion a matrix turns into this force (d,): all where it is tunable."""
+        if joint.name not in self.tables[what]:
+            return np.ones(len(joint.dofs), bool)
+        entries = (self.tables[what][joint.name] != 0).any(axis=0)
+        return np.asarray(entries.any(axis=0) if dof is None else entries[dof])
+
     def _entries(self, joint: JointRows, what: str, dof: int | None) -> set[str]:
+        if joint.name in self.tables[what]:
+            table = self.tables[what][joint.name]
+            rows = table if dof is None else table[:, dof]
+            return {TORQUE} if (rows != rows[0]).any() else set()
         size = len(joint.dofs)
         if joint.scalar or self.matrices:
             return {f"{joint.name}.{what}"}
@@ -165,6 +187,9 @@ class Dependencies:
             parameters |= {f"{prefix}.teeth"}
             parameters |= {f"{tone.name}.{what}" for tone in source.tones for what in ("amplitude", "phase")}
         inputs = [load.name for load in self.network.loads if load.name in found.inputs]
+        if TORQUE in parameters:  # an input that stands where parameters do
+            parameters.remove(TORQUE)
+            inputs.append(TORQUE)
         return Unknown((*inputs, *knowns), tuple(sorted(parameters)))
 
 

@@ -177,6 +177,11 @@ def numbers(variable: Variable) -> dict[str, str]:
     return attributes
 
 
+def is_initial_unknown(variable: Variable) -> bool:
+    """Whether it is listed as such: outputs, calculated parameters and derivatives."""
+    return variable.causality in ("output", "calculatedParameter") or variable.derivative_of is not None
+
+
 def _variables(root: ET.Element, variables: Sequence[Variable]) -> None:
     parent = ET.SubElement(root, "ModelVariables")
     place = {variable.name: i for i, variable in enumerate(variables, start=1)}
@@ -196,7 +201,7 @@ def _structure(root: ET.Element, variables: Sequence[Variable]) -> None:
     sections: Mapping[str, Sequence[Variable]] = {
         "Outputs": [v for v in variables if v.causality == "output"],
         "Derivatives": [v for v in variables if v.derivative_of is not None],
-        "InitialUnknowns": [v for v in variables if v.causality in _CALCULATED and v.start is None],
+        "InitialUnknowns": [v for v in variables if is_initial_unknown(v)],
     }
     for section, unknowns in sections.items():
         if not unknowns:

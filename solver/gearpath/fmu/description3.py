@@ -3,7 +3,16 @@
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
-from .description import Identity, add_categories, add_experiment, add_units, as_file, numbers, roles
+from .description import (
+    Identity,
+    add_categories,
+    add_experiment,
+    add_units,
+    as_file,
+    is_initial_unknown,
+    numbers,
+    roles,
+)
 from .variables import Variable
 
 _OVER_TIME = ("input", "output")  # what may be read or written within a step
@@ -94,5 +103,5 @@ def _structure(root: ET.Element, variables: Sequence[Variable]) -> None:
         if variable.derivative_of is not None:
             add("ContinuousStateDerivative", variable, variable.dependencies)
     for variable in variables:
-        if variable.causality in ("output", "calculatedParameter") or variable.derivative_of is not None:
+        if is_initial_unknown(variable):
             add("InitialUnknown", variable, variable.initial_dependencies)

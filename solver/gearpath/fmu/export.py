@@ -2,15 +2,20 @@
 
 import re
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 from .._version import __version__
 from ..errors import InputError
 from ..network.assemble import assemble
+from ..network.modal import ModalNetwork
+from ..network.records import Schedule
 from ..network.system import System
+from ..numerics.arrays import Real
 from .documentation import BAND
 from .native import export_native
 from .python_kind import export_python
+from .scheduled import check_schedule
 
 KINDS = ("native", "python")
 VERSIONS = ("2.0", "3.0")
@@ -32,12 +37,14 @@ def export(
     frequency: float = 1000.0,
     documentation: bool = True,
     band: tuple[float, float] = BAND,
+    schedule: Schedule | None = None,
 ) -> Path:
     """Write the FMU to `path` (a temporary file is moved there at the end) and return the path.
 
     `frequency` (Hz) is the start value of the input of that name. `documentation` adds plots over the `band`
-    (Hz) and reference results to the native kind. Raises InputError for an unknown kind or version of FMI and for a
-    path that cannot be written.
+    (Hz) and reference results to the native kind. With a `schedule` the native kind has the input operation.torque,
+    which decides the matrices of its joints. Raises InputError for an unknown kind or version of FMI, a schedule that
+    cannot be used, and a path that cannot be written.
     """
     if kind not in KINDS:
         raise InputError(f"kind: there is no kind {kind!r} of FMU; use one of: {', '.join(KINDS)}")
@@ -45,6 +52,8 @@ def export(
         raise InputError(f"fmi: version {fmi!r} is not available; use one of: {', '.join(VERSIONS)}")
     if kind == "python" and fmi != "2.0":
         raise InputError("fmi: pythonfmu makes FMUs of FMI 2.0 only; use the native kind for FMI 3.0")
+    if kind == "python" and schedule is not None:
+        raise InputError("schedule: the python kind has none; use the native kind for stiffness over the torque")
     if path.suffix.lower() != ".fmu" and not path.is_dir():
         raise InputError(f"{path}: the name of an FMU ends in .fmu, or importers do not take it")
     if path.is_dir():
@@ -61,7 +70,7 @@ def export(
     }
     try:
         if kind == "native":
-            network = assemble(system).modal().viscous()
+            network = prepared(system, schedule)
             more = {"fmi": fmi, "documentation": documentation, "band": band}
             return export_native(network, path, **settings, **more)  # type: ignore[arg-type]
         if system.source is not None:
@@ -69,3 +78,32 @@ def export(
         return export_python(system, path, **settings)  # type: ignore[arg-type]
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror}); choose another place") from error
+
+
+def started(system: System, schedule: Schedule | None) -> System:
+    """The system whose joints have the matrices that a schedule begins with."""
+    if schedule is None:
+        return system
+    K, C = schedule.at(schedule.first)
+    joints = dict(system.joints)
+    for name in K.keys() & joints.keys():
+        joint = replace(joints[name], stiffness=_rows(K[name]), mounting=None)
+        joints[name] = replace(joint, damping=_rows(C[name])) if name in C else joint
+    return replace(system, joints=joints)
+
+
+def prepared(system: System, schedule: Schedule | None) -> ModalNetwork:
+    """The network that a native FMU is made of: viscous, in all modes, as the schedule begins.
+
+    Raises:
+        InputError: the schedule cannot be followed by this system.
+    """
+    network = replace(assemble(system).modal(), schedule=schedule)
+    if schedule is None:
+        return network.viscous()
+    check_schedule(network)
+    return network.viscous().at_torque(schedule.first)
+
+
+def _rows(matrix: Real) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(row) for row in (0.5 * (matrix + matrix.T)).tolist())

@@ -16,6 +16,7 @@ from .description3 import build_description, model_description3
 from .documentation import BAND
 from .native_table import native_table
 from .package import write_fmu
+from .scheduled import check_matrix, check_schedule
 from .supplements import supplements
 
 _PLACEHOLDER = "{00000000-0000-0000-0000-000000000000}"
@@ -39,6 +40,7 @@ def export_native(
 ) -> Path:
     """Write the FMU of `network` to `path`, model exchange and co-simulation, for all platforms; return the path.
 
+    The joints of a schedule begin with its matrices.
     `frequency` (Hz) is the start value of the input of that name; times in s; `fmi` is "2.0" or "3.0".
     `documentation`: with plots and reference results (True), a page, terminals and icons only (False), or nothing of
     the kind (None); the plots begin and end where `band` does (Hz). `extra_files` go into the FMU
@@ -50,6 +52,8 @@ def export_native(
     """
     check_arguments(model_identifier, start_time, stop_time, step_size)
     check_network(network)
+    if network.schedule is not None:
+        network = network.at_torque(network.schedule.first)
     variables = native_table(network, frequency, fmi)
     sources = runtime_files.sources(fmi)
     content = payload(network, variables, frequency)
@@ -123,13 +127,8 @@ def check_network(network: ModalNetwork) -> None:
             raise InputError(f"{name}.modal_damping: {ratio} is no damping ratio; give at least 0 and less than 1")
     for joint in network.joints:
         for what, matrix in (("stiffness", joint.stiffness), ("damping", joint.damping)):
-            scale = np.abs(matrix).max(initial=0.0)
-            if np.abs(matrix - matrix.T).max() > 1e-10 * scale:
-                raise InputError(f"{joint.name}.{what}: the matrix is not symmetric; make it so")
-            # in units of its own diagonal, so that N/m and N m/rad count alike
-            unit = np.sqrt(np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0))
-            if np.linalg.eigvalsh(0.5 * (matrix + matrix.T) / np.outer(unit, unit)).min() < -1e-12:
-                raise InputError(f"{joint.name}.{what}: the matrix is not positive semidefinite; correct it")
+            check_matrix(f"{joint.name}.{what}", matrix)
+    check_schedule(network)
     # The acceleration of a row that a mesh moves directly (row . X d) would need the derivative of the input.
     frequencies = np.sqrt(network.eigenvalues)
     for output in network.outputs:

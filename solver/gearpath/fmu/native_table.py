@@ -10,7 +10,8 @@ from ..network.modal import ModalNetwork
 from ..network.records import MeshSource
 from ..network.time_twin import state_scale
 from ..numerics.arrays import Real
-from .dependencies import Dependencies
+from .dependencies import TORQUE, Dependencies
+from .scheduled import followed, torque_inputs
 from .variables import (
     Kind,
     Variable,
@@ -32,9 +33,9 @@ SPEED_NOMINAL = 1000.0  # rev/min
 def native_table(network: ModalNetwork, frequency: float, fmi: str = "2.0") -> tuple[Variable, ...]:
     """All variables of the native FMU, in the order of their value references.
 
-    Inputs, parameters, outputs over time, outputs over frequency, orders of the source, states and their
-    derivatives. FMI 3 has arrays in place of matrix entries and states, ports as arrays as well, the matrices of the
-    state equations, and the time. Raises InputError as `variable_table` does.
+    Inputs, parameters (local where a schedule decides them), outputs over time, outputs over frequency, orders of the
+    source, states and their derivatives. FMI 3 has arrays in place of matrix entries and states, ports as arrays as
+    well, the matrices of the state equations, and the time. Raises InputError as `variable_table` does.
     """
     check_names(network, frequency)
     arrays = fmi == "3.0"
@@ -45,19 +46,21 @@ def native_table(network: ModalNetwork, frequency: float, fmi: str = "2.0") -> t
         angle=_angle(network, arrays),
         matrices=arrays,
     )
-    joints = list(_joint_matrices(network) if arrays else joint_parameters(network))
+    joints = followed(network, _joint_matrices(network) if arrays else joint_parameters(network))
     coupled = [*joints, *modal_parameters(network)]
-    system = tuple(parameter.name for parameter in coupled)
+    system = tuple(parameter.name for parameter in coupled if parameter.causality == "parameter")
+    torque = (TORQUE,) if network.schedule else ()
     table = (
         *inputs(network, frequency),
         *_source_inputs(network.source),
+        *torque_inputs(network.schedule),
         *coupled,
         *_source_parameters(network.source),
         *time_outputs(network, structure),
         *(_ports(network, structure) if arrays else ()),
-        *frequency_outputs(network, excitation_of(network), system),
-        *_orders(network.source, system),
-        *(_state_arrays(network, system) if arrays else _states(network, structure, names)),
+        *frequency_outputs(network, excitation_of(network), system, ("frequency", *torque)),
+        *_orders(network.source, system, torque),
+        *(_state_arrays(network, system, torque) if arrays else _states(network, structure, names)),
         *(_matrices(network, system) if arrays else ()),
         *((Variable("time", Kind.TIME, (0, 0, 0), "independent", "s", "Simulation time", 1.0),) if arrays else ()),
     )
@@ -129,7 +132,7 @@ def _source_parameters(source: MeshSource | None) -> Iterable[Variable]:
             yield Variable(f"{tone.name}.{part}", kind, (i, 0, 0), "parameter", unit, text, nominal, start=float(start))
 
 
-def _orders(source: MeshSource | None, system: tuple[str, ...]) -> Iterable[Variable]:
+def _orders(source: MeshSource | None, system: tuple[str, ...], torque: tuple[str, ...]) -> Iterable[Variable]:
     if source is None:
         return
     speed, teeth = f"{_prefix(source)}.speed", f"{_prefix(source)}.teeth"
@@ -153,6 +156,7 @@ def _orders(source: MeshSource | None, system: tuple[str, ...]) -> Iterable[Vari
                 (f"{tone.name}.amplitude", *system),
             ),
         ):
+            follows = () if kind is Kind.ORDER_FREQUENCY else torque
             yield Variable(
                 f"{tone.name}.{part}",
                 kind,
@@ -161,8 +165,8 @@ def _orders(source: MeshSource | None, system: tuple[str, ...]) -> Iterable[Vari
                 unit,
                 text,
                 nominal,
-                dependencies=(speed,),
-                initial_dependencies=(speed, teeth, *extra),
+                dependencies=(speed, *follows),
+                initial_dependencies=(speed, *follows, teeth, *extra),
             )
 
 
@@ -260,7 +264,7 @@ def _states(network: ModalNetwork, structure: Dependencies, names: Sequence[str]
         )
 
 
-def _state_arrays(network: ModalNetwork, system: tuple[str, ...]) -> Iterable[Variable]:
+def _state_arrays(network: ModalNetwork, system: tuple[str, ...], torque: tuple[str, ...]) -> Iterable[Variable]:
     size = 2 * len(network.eigenvalues) + (network.source is not None)
     text = "Modal displacements times angular frequencies, then modal velocities, mass-normalised"
     if network.source is not None:
@@ -282,8 +286,8 @@ def _state_arrays(network: ModalNetwork, system: tuple[str, ...]) -> Iterable[Va
         "Derivatives of the states",
         nominal * float(np.median(state_scale(network))),
         shape=(size,),
-        dependencies=(*loads, _STATE),
-        initial_dependencies=(*loads, _STATE, *system, *source),
+        dependencies=(*loads, *torque, _STATE),
+        initial_dependencies=(*loads, *torque, _STATE, *system, *source),
         derivative_of=_STATE,
     )
 
@@ -305,12 +309,12 @@ def _matrices(network: ModalNetwork, system: tuple[str, ...]) -> Iterable[Variab
         if 0 in shape:
             continue
         unknowns = map(structure.of_output, linear) if name in "CD" else [structure.of_derivatives()]
-        found = {parameter for unknown in unknowns for parameter in unknown.parameters}
+        found = {known for unknown in unknowns for known in unknown.initial}
         yield Variable(
             f"system.{name}",
             kind,
             (0, 0, 0),
-            "calculatedParameter",
+            "local" if TORQUE in found else "calculatedParameter",  # a parameter cannot follow an input
             None,
             f"Matrix {name} of the state equations x' = A x + B u, y = C x + D u: {rows} by {columns}",
             1.0,

@@ -39,6 +39,7 @@ class Kind(IntEnum):
     STATE = 19
     DERIVATIVE = 20
     TIME = 25
+    TORQUE = 26
     # arrays
     STIFFNESS_MATRIX = 64
     DAMPING_MATRIX = 65
@@ -242,9 +243,11 @@ def time_outputs(network: ModalNetwork, structure: Dependencies) -> Iterable[Var
         )
 
 
-def frequency_outputs(network: ModalNetwork, excitation: Load, parameters: tuple[str, ...]) -> Iterable[Variable]:
-    """Power ratios and transfers at the input frequency; `parameters` are all that change them."""
-    initial = ("frequency", *parameters)
+def frequency_outputs(
+    network: ModalNetwork, excitation: Load, parameters: tuple[str, ...], inputs: tuple[str, ...] = ("frequency",)
+) -> Iterable[Variable]:
+    """Power ratios and transfers at the input frequency; `parameters` and `inputs` are all that change them."""
+    initial = (*inputs, *parameters)
 
     def ratio(name: str, kind: Kind, index: int, what: str) -> Variable:
         text = f"Time-averaged power {what}, divided by the input power, at the input frequency"
@@ -256,7 +259,7 @@ def frequency_outputs(network: ModalNetwork, excitation: Load, parameters: tuple
             "1",
             text,
             1.0,
-            dependencies=("frequency",),
+            dependencies=inputs,
             initial_dependencies=initial,
         )
 
@@ -284,6 +287,6 @@ def frequency_outputs(network: ModalNetwork, excitation: Load, parameters: tuple
                 transfer_unit(output.unit, excitation.unit),
                 f"{side} part of the transfer from {excitation.name} to {output.name}, at the frequency",
                 _NOMINAL[output.quantity] / load_nominal(excitation),
-                dependencies=("frequency",),
+                dependencies=inputs,
                 initial_dependencies=initial,
             )

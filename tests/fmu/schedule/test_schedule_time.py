@@ -28,7 +28,7 @@ def deviation(found, wanted):
 
 @BOTH
 @pytest.mark.parametrize("linear", [False, True], ids=["held", "linear"])
-@pytest.mark.parametrize("h", [5e-6, 1e-4])
+@pytest.mark.parametrize("h", [5e-6, 3e-5])
 def test_co_simulation(fmus, scheduled, version, linear, h):
     """Every output, powers too, while the torque jumps; python-control goes on with the other system's state."""
     pieces = [Piece(interpolated(scheduled, torque)) for torque in COURSE]

@@ -3,7 +3,7 @@
 from html import escape
 
 from ...network.modal import ModalNetwork
-from ...network.records import MeshSource
+from ...network.records import MeshSource, Schedule
 from ...network.time_twin import RIGID_SCALE
 from ..description import LOG_CATEGORIES
 
@@ -80,7 +80,7 @@ faster and more accurate.</p>
 
 _BEHAVIOUR = """
 <h3>Parameters while running</h3>
-<p>All parameters are tunable: stiffness and damping of every joint {matrices}, the modal damping of
+<p>All parameters are tunable: stiffness and damping of {joints} {matrices}, the modal damping of
 components{more}. Set them before or in initialisation, between the steps of a co-simulation, or in the event
 mode of model exchange. The next step or output uses them, the power ratios included; positions and velocities
 stay continuous. Matrices are symmetric and must be positive semidefinite; damping ratios lie from 0 to below 1.
@@ -103,6 +103,18 @@ Log categories:</p>
 <p>Nothing is needed beside the FMU: the libraries in <code>binaries/</code> use the C library only, and
 <code>sources/</code> compiles to the same numbers. Any number of instances may run at a time, each in any one
 thread; there are no global variables, and no step takes memory.</p>
+"""
+
+_SCHEDULE = """
+<h3>Stiffness over the torque</h3>
+<p class="eq">K(T) = (1 − s) K<sub>i</sub> + s K<sub>i+1</sub>,&emsp;s = (T − T<sub>i</sub>) / (T<sub>i+1</sub> −
+T<sub>i</sub>)</p>
+<p>The input <code>operation.torque</code> (T, N m) decides the stiffness of {stiffness}, and the damping of {damping}:
+linear between the operating points {points}&nbsp;N&nbsp;m, whose matrices were computed at export; beyond them those
+of the first or last one. They can be read but not set. Outputs over frequency follow at once, and so do derivatives
+in model exchange. A step holds the torque at the value set before it (a derivative in time, or a value for its end,
+counts from its end on), and each change of the torque costs as much as a change of parameters. Motion stays
+continuous. Derivatives with respect to the torque are those of the interval above it, at a point too.</p>
 """
 
 _STATE = {
@@ -153,14 +165,25 @@ def inputs(fmi: str, highest: float) -> str:
 
 
 def behaviour(network: ModalNetwork, fmi: str) -> str:
-    """Parameters, state, derivatives, errors, logging, platforms."""
+    """Parameters, the schedule over the torque, state, derivatives, errors, logging, platforms."""
     listed = (f"<dt><code>{escape(k)}</code></dt><dd>{escape(v)}</dd>" for k, v in LOG_CATEGORIES.items())
-    return _BEHAVIOUR.format(
+    scheduled = "" if network.schedule is None else _scheduled(network.schedule)
+    return scheduled + _BEHAVIOUR.format(
+        joints="every joint" if network.schedule is None else "every joint that does not follow the torque",
         matrices=_MATRICES[fmi],
         more=", tooth count and tones of the gear mesh source" if network.source is not None else "",
         state=_STATE[fmi],
         derivatives=_DERIVATIVES[fmi],
         categories="\n".join(listed),
+    )
+
+
+def _scheduled(schedule: Schedule) -> str:
+    points = ", ".join(f"{torque:g}" for torque in schedule.torques)
+    return _SCHEDULE.format(
+        points=points,
+        stiffness=escape(", ".join(sorted(schedule.stiffness))),
+        damping=escape(", ".join(sorted(schedule.damping))) or "none of them",
     )
 
 

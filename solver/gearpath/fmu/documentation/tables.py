@@ -8,17 +8,21 @@ import numpy as np
 from ...network.modal import ModalNetwork
 from ...network.records import JointRows
 from ...numerics.arrays import Real
+from ..dependencies import TORQUE
 from ..units import DISPLAY
 from ..variables import Kind, Variable, motion_of
 from .modes import ModalData
 
 _SHOWN_MODES = 40
+_JOINTS = (Kind.STIFFNESS, Kind.DAMPING, Kind.STIFFNESS_MATRIX, Kind.DAMPING_MATRIX)
+_MATRICES = (Kind.MATRIX_A, Kind.MATRIX_B, Kind.MATRIX_C, Kind.MATRIX_D)
 _GROUPS = (
-    ("Inputs", ("input",), False),
-    ("Parameters", ("parameter",), False),
-    ("Outputs", ("output",), False),
-    ("States, derivatives and time", ("local", "independent"), True),
-    ("Matrices of the state equations", ("calculatedParameter",), False),
+    "Inputs",
+    "Parameters",
+    f"Following {TORQUE}",
+    "Outputs",
+    "States, derivatives and time",
+    "Matrices of the state equations",
 )
 
 
@@ -108,8 +112,8 @@ def modes(network: ModalNetwork, data: ModalData, highest: float) -> str:
 def variables(every: Sequence[Variable]) -> str:
     """All variables by what they are for; the long list of states folded away."""
     parts = []
-    for heading, causalities, folded in _GROUPS:
-        group = [v for v in every if v.causality in causalities]
+    for heading in _GROUPS:
+        group, folded = [v for v in every if _group(v) == heading], heading.startswith("States")
         if not group:
             continue
         content = table(("Name", "Unit", "Start", "Meaning"), map(_variable, group))
@@ -118,6 +122,15 @@ def variables(every: Sequence[Variable]) -> str:
         else:
             parts.append(f"<h3>{heading} ({len(group)})</h3>\n{content}")
     return "\n".join(parts)
+
+
+def _group(variable: Variable) -> str:
+    inputs, parameters, following, outputs, states, matrices = _GROUPS
+    if variable.kind in _MATRICES:
+        return matrices
+    if variable.causality == "local" and variable.kind in _JOINTS:
+        return following
+    return {"input": inputs, "parameter": parameters, "output": outputs}.get(variable.causality, states)
 
 
 def _variable(variable: Variable) -> tuple[str, str, str, str]:

@@ -1,5 +1,5 @@
 """Validation of an exported FMU: every check with its figure and its limit."""
 
-from .suite import validate
+from .suite import torques_of, validate
 
-__all__ = ["validate"]
+__all__ = ["torques_of", "validate"]

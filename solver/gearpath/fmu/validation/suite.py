@@ -11,20 +11,21 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import GearpathError, InputError, MissingExtraError
-from ...network.assemble import assemble
 from ...network.modal import ModalNetwork
 from ...network.natural import natural_frequencies
-from ...network.records import Load
+from ...network.records import Load, Schedule
 from ...network.system import System
 from ...network.time_twin import time_twin
 from ...numerics.arrays import Real
+from ..binary import scheduled_torques
 from ..checks import Check, Comparison, ValidationReport
 from ..conformance import Finding, Severity, check_conformance
-from ..export import export
+from ..export import export, prepared, started
 from ..native_table import native_table
+from ..python_bearings import decided_by_design
 from ..simulation import running
 from ..variables import variable_table
-from . import chirp, measure, source, spectrum, tones
+from . import chirp, measure, schedule, source, spectrum, tones
 from .exchange import exchanged, start_check
 
 Message = Callable[[str], None]
@@ -39,6 +40,7 @@ class Limits:
     chirp: float = 1e-10
     spectrum: float = 1e-9
     kinds: float = 1e-9
+    schedule: float = 1e-9
     steady: float = 1e-6
     energy: float = 1e-6
 
@@ -48,16 +50,22 @@ def validate(
     system: System,
     band: tuple[float, float],
     *,
+    scheduled: Schedule | None = None,
     message: Message = lambda _: None,
     advance: Callable[[float], None] = lambda _: None,
 ) -> ValidationReport:
     """Check the FMU at `path` against the model that it was made from, over the band (Hz).
 
+    `scheduled`: the matrices over the torque that the FMU must follow.
+
     `message` is told what begins, `advance` the part of the whole work that was done. Raises InputError where the
     file is no FMU.
     """
     kind = kind_of(path)
-    network = assemble(system).modal().viscous()
+    network = prepared(system, scheduled)
+    system = started(system, scheduled)  # for the other kind, which has no schedule
+    if kind == "python":
+        network = replace(network, decided=decided_by_design(system))
     message("standard: the rules that validators miss")
     findings = check_conformance(path)
     message("standard: fmpy's validator")
@@ -114,6 +122,11 @@ def _physics(
         message("gear mesh source against python-control")
         with running(path) as fmu:
             checks += source.checks(fmu, network, network.source, limits.chirp, limits.spectrum)
+    if network.schedule is not None:
+        message("stiffness over the torque against python-control")
+        with running(path) as fmu:
+            fmu.start(source.silenced(network, kind))
+            checks += schedule.checks(fmu, network, network.schedule, band, limits.spectrum, limits.schedule)
     other = "python" if kind == "native" else "native"
     message(f"{kind} against {other} kind")
     checks.append(_kinds_check(system, network, band, signals, found, other, limits.kinds))
@@ -146,6 +159,17 @@ def kind_of(path: Path) -> str:
     if "modelDescription.xml" not in names:
         raise InputError(f"{path}: is not an FMU (no modelDescription.xml); export one with gearpath fmu")
     return "native" if "resources/model.bin" in names else "python"
+
+
+def torques_of(path: Path) -> list[float]:
+    """Torques (N m) of the schedule that an FMU holds; none where it has none. Raises InputError as `kind_of`."""
+    if kind_of(path) != "native":
+        return []
+    with zipfile.ZipFile(path) as archive:
+        try:
+            return [float(torque) for torque in scheduled_torques(archive.read("resources/model.bin"))]
+        except (InputError, zipfile.BadZipFile):
+            return []  # the checks of the file say what is wrong
 
 
 def standard_check(path: Path) -> Check:
