@@ -4,8 +4,13 @@
 """
 
 import ctypes
+import os
 import sys
 
+# OpenBLAS reads this once, when it is loaded. One thread is faster for the small systems here, and with several a
+# process that loads scipy from within an FMU sometimes aborts when it exits ("corrupted double-linked list").
+own_choice = os.environ.get("OPENBLAS_NUM_THREADS")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 try:
     import numpy  # noqa: F401
     import scipy.linalg  # noqa: F401
@@ -16,8 +21,11 @@ except ImportError as problem:
     )
     print(message, file=sys.stderr)  # pythonfmu passes nothing on where logging is off
     raise ImportError(message) from problem
+finally:
+    if own_choice is None:
+        del os.environ["OPENBLAS_NUM_THREADS"]
 
-from gearpath_bundle.fmu.slave import GearpathSlave
+from gearpath_bundle.fmu.slave import GearpathSlave  # noqa: E402
 
 
 class GearpathFmu(GearpathSlave):
