@@ -58,11 +58,12 @@ def contradiction(model):
     mesh = train.meshes["mesh"]
     force = model.table.operation.torque / (mesh.base_radii[0] * cos(mesh.helix_angle))
     structure = network.structures["gear_train"]
+    sense = -1.0 if mesh.driving_torque == "-z" else 1.0
     if "rz" in model.dofs:  # torques that balance on the two gears
         for (shaft, disk), radius in zip((text.split(".") for text in mesh.between), mesh.base_radii):
             z = next(item.z for item in train.shafts[shaft].disks if item.name == disk)
             row = spin_row(model, shaft, z, structure.size)
-            f[network.blocks["gear_train"]] += force * radius * cos(mesh.helix_angle) * row
+            f[network.blocks["gear_train"]] += sense * force * radius * cos(mesh.helix_angle) * row
     else:  # the last coordinate of the train is the gears' relative spin
         f[network.blocks["gear_train"]][-1] = force
     rows, places = [], []
@@ -198,10 +199,12 @@ def test_small_changes_follow_the_stiffness():
     torque=st.floats(1.0, 300.0),
     preload=st.floats(50.0, 2000.0),
     helix=st.floats(-0.3, 0.3),
+    driving=st.sampled_from(["+z", "-z"]),
 )
-def test_random_machines_are_balanced(designation, torque, preload, helix):
+def test_random_machines_are_balanced(designation, torque, preload, helix, driving):
     model = machine(HELICAL, apart(designation, preload=preload), torque)
-    model = model.replace({"components.gear_train.meshes.mesh.helix_angle": helix})
+    mesh = "components.gear_train.meshes.mesh"
+    model = model.replace({f"{mesh}.helix_angle": helix, f"{mesh}.driving_torque": driving})
     assert contradiction(model) < 1e-8
     for name, state in quiet(model).items():
         K = np.array(model.system.joints[name].stiffness)
@@ -299,6 +302,40 @@ def test_mean_load_of_a_chain():
     assert backwards.force["second"] == pytest.approx(50.0 / (0.08 * cos(0.2)))
     with pytest.raises(gp.InputError, match="several meshes at once: first, second"):
         mean_load(meshes, 50.0, "b")
+
+
+def test_two_stages_in_planar_balance():
+    """Three shafts: each mesh carries its tooth force, and the middle shaft their difference, by hand."""
+    data = spur().to_dict()
+    train = data["components"]["gear_train"]
+    train["shafts"]["middle"] = train["shafts"].pop("output")
+    middle = train["shafts"]["middle"]
+    train["meshes"]["mesh"]["between"] = ["input.pinion", "middle.wheel"]
+    train["shafts"]["last"] = {**middle, "origin": [0.15025, 0.0, -0.125], "elements": 8}
+    train["shafts"]["last"]["disks"] = [{**middle["disks"][0], "name": "wheel", "z": 0.06}]
+    middle["disks"] = [*middle["disks"], {**middle["disks"][0], "name": "pinion", "z": 0.06}]
+    middle["elements"] = 8
+    train["meshes"]["second"] = {
+        "between": ["middle.pinion", "last.wheel"],
+        "stiffness": 1.5e8,
+        "base_radii": [0.03, 0.07],
+    }
+    for k, shaft in ((3, "middle"), (4, "middle"), (5, "last"), (6, "last")):
+        end = 0.25 if k % 2 == 0 else 0.0
+        data["joints"][f"bearing_{k}"] = {
+            **data["joints"]["bearing_1"],
+            "between": [f"gear_train.{shaft}@{end}", "casing"],
+        }
+    found = quiet(type(SPUR).from_dict(data))
+    first = 100.0 / 0.04975
+    second = first * 0.05025 / 0.03
+    y = {name: state.load[1] for name, state in found.items()}
+    assert y["bearing_1"] + y["bearing_2"] == pytest.approx(-first, rel=1e-9)
+    assert y["bearing_3"] + y["bearing_4"] == pytest.approx(first - second, rel=1e-9)
+    assert y["bearing_5"] + y["bearing_6"] == pytest.approx(second, rel=1e-9)
+    # moments about the first end; a force uy at z turns by -z uy about x
+    turned = found["bearing_5"].load[3] + found["bearing_6"].load[3] - 0.25 * y["bearing_6"]
+    assert turned == pytest.approx(-0.06 * second, rel=1e-9)
 
 
 def test_centrifugal_warning_takes_the_shaft_of_the_bearing():
