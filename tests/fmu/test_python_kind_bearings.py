@@ -147,6 +147,14 @@ def test_what_cannot_be_built_or_carried_is_said():
             redesign(system, values)
 
 
+def test_a_contact_angle_takes_the_place_of_the_clearance():
+    loose = model(**{"joints.bearing_1.geometry.radial_clearance": 5e-6}).system
+    row = redesign(loose, {"bearing_1.geometry.contact_angle": 0.2}).joints["bearing_1"].mounting.row
+    assert (row.contact_angle, row.radial_clearance) == (0.2, 0.0)
+    with pytest.raises(InputError, match="radial_clearance: "):
+        redesign(loose, {"bearing_1.geometry.contact_angle": 0.2, "bearing_1.geometry.radial_clearance": 5e-6})
+
+
 def test_reading_gives_what_was_set():
     system = model().system
     for parameter in design_parameters(system):

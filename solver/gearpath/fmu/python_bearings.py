@@ -97,8 +97,11 @@ def _with(system: System, name: str, **changes: Any) -> System:
 
 def _of_geometry(name: str, key: str, unit: str, nominal: float, positive: bool, text: str) -> DesignParameter:
     def edit(system: System, value: float) -> System:
-        number = round(value) if key in _WHOLE else value
-        return _with(system, name, row=replace(_mounting(system, name).row, **{key: number}))  # type: ignore[type-var]
+        row = _mounting(system, name).row
+        changes: dict[str, Any] = {key: round(value) if key in _WHOLE else value}
+        if key == "contact_angle" and value and isinstance(row, BallBearing):
+            changes["radial_clearance"] = 0.0  # the angle has it already; set besides, it is refused
+        return _with(system, name, row=replace(row, **changes))  # type: ignore[type-var]
 
     return DesignParameter(
         f"{name}.geometry.{key}",
