@@ -11,8 +11,13 @@ from gearpath.network.assemble import assemble  # noqa: E402
 
 
 def pytest_collection_modifyitems(items):
-    """Fast tests first; slow ones still run."""
-    items.sort(key=lambda item: item.get_closest_marker("slow") is not None)
+    """Fast tests first, then slow ones, of these the longest first: at the end no process waits for another."""
+
+    def order(item):
+        slow = item.get_closest_marker("slow") is not None
+        return slow, not (slow and "test_sanitized.py" in item.nodeid)
+
+    items.sort(key=order)
 
 
 @pytest.fixture(scope="session")
