@@ -13,7 +13,7 @@
 #include "gp_crc.h"
 #include "gp_model_check.h"
 
-enum { HEADER = 72, COUNTS = 16, VERSION = 3, LARGEST_COUNT = 1 << 13, LARGEST_TABLE = 1 << 24, LARGEST_FILE = 1 << 30 };
+enum { HEADER = 72, COUNTS = 16, VERSION = 4, LARGEST_COUNT = 1 << 13, LARGEST_TABLE = 1 << 24, LARGEST_FILE = 1 << 30 };
 
 static int refuse(GpText *message, const char *why) {
     gp_text_clear(message);
@@ -96,6 +96,7 @@ static int find_sections(GpModel *m, size_t size, size_t text_size) {
     GP_SECTION(m->scale, m->modes, 8);
     GP_SECTION(m->nominal, m->modes, 8);
     GP_SECTION(m->zeta, m->groups, 8);
+    GP_SECTION(m->share, m->groups * m->modes, 8);
     GP_SECTION(m->source, m->rows * m->modes, 8);
     GP_SECTION(m->receiver, m->rows * m->modes, 8);
     GP_SECTION(m->stiffness, m->blocks, 8);
@@ -110,7 +111,6 @@ static int find_sections(GpModel *m, size_t size, size_t text_size) {
     GP_SECTION(m->stiffness_at, m->points * m->blocks, 8);
     GP_SECTION(m->damping_at, m->points * m->blocks, 8);
     GP_SECTION(m->pair_kind, m->pairs, 4);
-    GP_SECTION(m->group, m->modes, 4);
     GP_SECTION(m->is_error, m->loads, 4);
     GP_SECTION(m->rotation, m->rows, 4);
     GP_SECTION(m->joint, m->joints, sizeof(GpJoint));

@@ -123,6 +123,7 @@ typedef struct {
     const double *scale;           /* (N) w: sqrt(L), or a fixed value where rigid, rad/s */
     const double *nominal;         /* (N) of the two states of each mode */
     const double *zeta;            /* (groups) start values of the damping ratios */
+    const double *share;           /* (groups, N) part of each ratio that a mode takes, not negative */
     const double *source;          /* (rows, N) */
     const double *receiver;        /* (rows, N) */
     const double *stiffness;       /* (blocks) start values */
@@ -137,7 +138,6 @@ typedef struct {
     const double *stiffness_at;    /* (points, blocks) at each torque, 0 where a joint does not follow */
     const double *damping_at;      /* (points, blocks) likewise */
     const uint32_t *pair_kind;     /* (pairs) GP_OSCILLATING ... */
-    const uint32_t *group;         /* (N) damping group of each mode, or GP_NONE */
     const uint32_t *is_error;      /* (M) 1 where the load is a transmission error */
     const uint32_t *rotation;      /* (rows) 1 where the degree of freedom is a rotation */
     const GpJoint *joint;          /* (joints) */

@@ -16,10 +16,11 @@ static int numbers_are_good(const GpModel *m) {
     if (!gp_finite(m->start_torque)) return 0;
     for (size_t r = 0; r < m->modes; r++) {
         if (m->eigenvalues[r] < 0 || !(m->scale[r] > 0) || !(m->nominal[r] > 0)) return 0;
-        if (m->group[r] != GP_NONE && m->group[r] >= m->groups) return 0;
     }
     for (size_t i = 0; i < m->groups; i++)
         if (m->zeta[i] < 0 || m->zeta[i] >= 1) return 0;
+    for (size_t i = 0; i < m->groups * m->modes; i++)
+        if (m->share[i] < 0) return 0;
     for (size_t i = 0; i < m->loads; i++)
         if (m->is_error[i] > 1) return 0;
     for (size_t i = 0; i < m->rows; i++)

@@ -12,7 +12,9 @@ void gp_system_joints(const GpModel *m, const double *packed, const double *P, d
 }
 
 double gp_modal_damping(const GpModel *m, const double *zeta, size_t r) { /* `scale` is sqrt(L) wherever L is not 0 */
-    return m->group[r] == GP_NONE || m->eigenvalues[r] == 0 ? 0 : 2 * zeta[m->group[r]] * m->scale[r];
+    double ratio = 0;
+    for (size_t g = 0; g < m->groups; g++) ratio += zeta[g] * m->share[g * m->modes + r];
+    return m->eigenvalues[r] == 0 ? 0 : 2 * ratio * m->scale[r];
 }
 
 void gp_system_form(GpSystem *s, const GpModel *m, const double *zeta, const double *K, const double *C) {

@@ -9,8 +9,9 @@ import numpy as np
 def modal_damping_matrix(network):
     X = np.zeros(len(network.eigenvalues))
     for name, zeta in network.modal_damping.items():
-        part = network.components[name]
-        X[part] = 2 * zeta * np.sqrt(network.eigenvalues[part])
+        own = np.zeros(len(X))
+        own[network.components.get(name, slice(0))] = 1
+        X += 2 * zeta * network.damping_shares.get(name, own) * np.sqrt(network.eigenvalues)
     return X
 
 

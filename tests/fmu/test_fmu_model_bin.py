@@ -15,7 +15,7 @@ from gearpath.fmu.native_table import native_table
 
 HEADER, COUNTS = 72, 16
 DATA = HEADER + 4 * COUNTS  # where the doubles begin
-UNSIGNED_KINDS, RECORDS = ("pairs", "group", "is_error", "rotation"), {"joint": 6, "output": 4, "variable": 6}
+UNSIGNED_KINDS, RECORDS = ("pairs", "is_error", "rotation"), {"joint": 6, "output": 4, "variable": 6}
 
 
 def layout(content: bytes):
@@ -24,11 +24,11 @@ def layout(content: bytes):
     names += ["text", "tones", "source", "pairs", "points"]
     n = dict(zip(names, struct.unpack_from("<14I", content, HEADER)))
     N = n["N"]
-    doubles = 4 + 3 * N + n["groups"] + 2 * n["rows"] * N + 2 * n["blocks"] + 2 * n["loads"] * N + n["outputs"] * N
+    doubles = 4 + 3 * N + n["groups"] * (1 + N) + 2 * n["rows"] * N + 2 * n["blocks"] + 2 * n["loads"] * N + n["outputs"] * N
     doubles += 4 * n["pairs"] + 2 * n["pairs"] * N + 4 * n["tones"]
     doubles += n["points"] * (1 + 2 * n["blocks"])
     at, sections = DATA + 8 * doubles, {}
-    lengths = [n["pairs"], N, n["loads"], n["rows"], 6 * n["joints"], 4 * n["outputs"], 6 * n["variables"]]
+    lengths = [n["pairs"], n["loads"], n["rows"], 6 * n["joints"], 4 * n["outputs"], 6 * n["variables"]]
     for name, length in zip((*UNSIGNED_KINDS, *RECORDS), lengths):
         sections[name] = (at, length)
         at += (4 * length + 7) // 8 * 8
@@ -97,8 +97,8 @@ def test_model_bin_wrong_numbers(model_bin):
     """Doubles NaN or infinite in turn, sealed: refused; all of the first, and of each section some."""
     original, attempt = model_bin
     n, doubles, _, _ = layout(original)
-    first = 4 + 3 * n["N"] + n["groups"]
-    for i in [*range(first + 2), *range(first + 2, doubles, 53), doubles - 1]:
+    first = 4 + 3 * n["N"] + n["groups"] * (1 + n["N"])
+    for i in [*range(4 + 3 * n["N"] + n["groups"] + 2), *range(first, doubles, 53), doubles - 1]:
         for bad in (math.nan, math.inf):
             content = bytearray(original)
             struct.pack_into("<d", content, DATA + 8 * i, bad)
@@ -134,7 +134,7 @@ def test_model_bin_wrong_indices(model_bin):
 
 def test_model_bin_of_another_version_says_what_to_do(model_bin):
     original, attempt = model_bin
-    for version in (0, 1, 2, 4):
+    for version in (0, 1, 2, 3, 5):
         content = bytearray(original)
         struct.pack_into("<I", content, 8, version)
         alive, message = attempt(sealed(bytes(content)))

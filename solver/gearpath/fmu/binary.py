@@ -16,7 +16,7 @@ from ..numerics.arrays import Real
 from .native_table import state_nominals
 from .variables import Variable
 
-MAGIC, VERSION, BYTE_ORDER = b"GEARPATH", 3, 0x01020304
+MAGIC, VERSION, BYTE_ORDER = b"GEARPATH", 4, 0x01020304
 NONE = 0x7FFFFFFF  # "no such index", GP_NONE
 QUANTITIES = ("displacement", "velocity", "acceleration", "force", "power")  # GP_DISPLACEMENT ...
 LARGEST_COUNT = 1 << 13  # of modes, joints, loads ...: what the runtime accepts
@@ -89,6 +89,7 @@ def _reals(network: ModalNetwork, frequency: float) -> list[Real]:
         state_scale(network),
         state_nominals(network),
         np.array(list(network.modal_damping.values())),
+        np.array([network.damping_share(name) for name in network.modal_damping]).reshape(-1, N),
         np.vstack([joint.source for joint in network.joints]),
         np.vstack([joint.receiver for joint in network.joints]),
         np.concatenate([_symmetric(joint.stiffness).ravel() for joint in network.joints]),
@@ -143,7 +144,6 @@ def _indices(network: ModalNetwork, variables: Sequence[Variable], names: Sequen
     starts, block_starts = np.cumsum([0, *sizes]), np.cumsum([0, *(size**2 for size in sizes)])
     joints = [joint.name for joint in network.joints]
     return [
-        _groups(network),
         [load.is_transmission_error for load in network.loads],
         [is_rotation(dof) for joint in network.joints for dof in joint.dofs],
         [
@@ -175,14 +175,6 @@ def _symmetric(matrix: Real) -> Real:
     return 0.5 * (matrix + matrix.T)
 
 
-def _groups(network: ModalNetwork) -> list[int]:
-    group = [NONE] * len(network.eigenvalues)
-    for g, name in enumerate(network.modal_damping):
-        for r in range(*network.components[name].indices(len(group))):
-            group[r] = g
-    return group
-
-
 def _names(names: Sequence[str]) -> tuple[list[int], bytes]:
     offsets, text = [], b""
     for name in names:
@@ -207,7 +199,7 @@ def scheduled_torques(content: bytes) -> Real:
     n = struct.unpack_from("<16I", content, 72)
     modes, groups, _, rows, blocks, loads, outputs = n[:7]
     tones, pairs, points = n[10], n[12], n[13]
-    before = 4 + 3 * modes + groups + 2 * rows * modes + 2 * blocks + 2 * loads * modes + outputs * modes
+    before = 4 + 3 * modes + groups * (1 + modes) + 2 * rows * modes + 2 * blocks + 2 * loads * modes + outputs * modes
     start = 136 + 8 * (before + 4 * pairs + 2 * pairs * modes + 4 * tones)
     if start + 8 * points > len(content):
         raise wrong

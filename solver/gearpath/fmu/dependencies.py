@@ -49,9 +49,7 @@ class Dependencies:
         self.elastic: Mask = network.eigenvalues > 0
         self.groups: dict[str, Mask] = {}  # parameter -> the elastic modes that it damps
         for name in network.modal_damping:
-            mask = np.zeros(N, bool)
-            mask[network.components[name]] = True
-            self.groups[f"{name}.modal_damping"] = mask & self.elastic
+            self.groups[f"{name}.modal_damping"] = (network.damping_share(name) != 0) & self.elastic
         self.damped: Mask = np.any([*self.groups.values(), np.zeros(N, bool)], axis=0)
         self.acts: dict[str, Mask] = {joint.name: joint.relative != 0 for joint in network.joints}  # (rows, N)
         self.joints = {joint.name: joint for joint in network.joints}

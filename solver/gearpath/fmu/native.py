@@ -138,7 +138,7 @@ def check_network(network: ModalNetwork) -> None:
             if load.mesh_displacement is None:
                 continue
             for component in network.modal_damping:
-                terms = (output.row * frequencies * load.mesh_displacement)[network.components[component]]
+                terms = output.row * frequencies * load.mesh_displacement * network.damping_share(component)
                 if abs(terms.sum()) > 1e-9 * np.abs(terms).sum():
                     raise InputError(
                         f"{output.name}: this acceleration depends on the derivative of {load.name}, which "

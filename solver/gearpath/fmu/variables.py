@@ -218,12 +218,18 @@ def modal_parameters(network: ModalNetwork) -> Iterable[Variable]:
             (g, 0, 0),
             "parameter",
             "1",
-            f"Damping ratio of every elastic free-free mode of {name}, below 1",
+            _damping_text(network, name),
             0.01,
             start=float(ratio),
             minimum=0.0,
             maximum=float(np.nextafter(1.0, 0.0)),
         )
+
+
+def _damping_text(network: ModalNetwork, name: str) -> str:
+    if name in network.damping_shares:
+        return f"Damping ratio of {name}, below 1; its modes keep their parts of it"
+    return f"Damping ratio of every elastic free-free mode of {name}, below 1"
 
 
 def time_outputs(network: ModalNetwork, structure: Dependencies) -> Iterable[Variable]:

@@ -18,7 +18,7 @@ class ModalNetwork:
 
     name: str
     components: Mapping[str, slice]  # name -> its modes
-    modal_damping: Mapping[str, float]  # name -> zeta of its elastic modes; only components that have elastic modes
+    modal_damping: Mapping[str, float]  # component -> zeta of its elastic modes; only those that have elastic modes
     eigenvalues: Real  # (N,), (rad/s)^2, exactly zero for rigid-body modes
     joints: tuple[JointRows, ...]  # rows on the N modal coordinates
     loads: tuple[Load, ...]
@@ -30,23 +30,34 @@ class ModalNetwork:
     loss_frequency: float = 1000.0  # Hz, where loss factors of joints and their viscous equivalents agree
     source: MeshSource | None = None  # of FMUs only: everything else takes the excitation as an input
     schedule: Schedule | None = None  # of FMUs only: everything else takes the joints as they are
+    damping_shares: Mapping[str, Real] = field(default_factory=dict)  # component -> rho (N,), where not 1 on its modes
     decided: frozenset[str] = frozenset()  # of FMUs only: matrices, as bearing_1.stiffness, that their design decides
+
+    def damping_share(self, name: str) -> Real:
+        """rho (N,): the part of a component's damping ratio and loss factor that each mode takes.
+
+        1 on the component's own modes, unless they have ratios of their own (then relative to the component's) or
+        are those of several components that move as one.
+        """
+        if name in self.damping_shares:
+            return self.damping_shares[name]
+        share = np.zeros_like(self.eigenvalues)
+        share[self.components[name]] = 1.0
+        return share
+
+    def _shared(self, values: Mapping[str, float]) -> Real:
+        """sum_c value_c rho_c, (N,)."""
+        return np.asarray(sum((v * self.damping_share(n) for n, v in values.items()), np.zeros_like(self.eigenvalues)))
 
     @property
     def damping(self) -> Real:
-        """Diagonal of X, (N,), rad/s."""
-        zeta = np.zeros_like(self.eigenvalues)
-        for name, ratio in self.modal_damping.items():
-            zeta[self.components[name]] = ratio
-        return 2.0 * zeta * np.sqrt(self.eigenvalues)
+        """Diagonal of X, 2 sqrt(L) sum_c zeta_c rho_c, (N,), rad/s."""
+        return 2.0 * self._shared(self.modal_damping) * np.sqrt(self.eigenvalues)
 
     @property
     def hysteresis(self) -> Real:
-        """eta L of every mode, (N,), (rad/s)^2: what the loss factors add to L as its imaginary part."""
-        eta = np.zeros_like(self.eigenvalues)
-        for name, factor in self.loss_factors.items():
-            eta[self.components[name]] = factor
-        return eta * self.eigenvalues
+        """eta L of every mode, L sum_c eta_c rho_c, (N,), (rad/s)^2: what the loss factors add as its imaginary part."""
+        return self._shared(self.loss_factors) * self.eigenvalues
 
     @property
     def has_loss_factors(self) -> bool:
