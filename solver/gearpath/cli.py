@@ -79,6 +79,12 @@ def fmu(
     torques: Annotated[
         str, typer.Option(metavar="N M,...", help="Stiffness follows operation.torque between these, as 10,50,100.")
     ] = "",
+    order: Annotated[
+        int | None, typer.Option(help="Reduce it to this number of coordinates, half as many as states.")
+    ] = None,
+    tolerance: Annotated[
+        float | None, typer.Option(help="Reduce it as far as this relative error over the model's frequencies allows.")
+    ] = None,
     set_: Settings = [],  # noqa: B006
     json: Json = False,
 ) -> None:
@@ -91,7 +97,8 @@ def fmu(
     except ValueError as error:
         raise InputError(f"--torques {torques}: are no numbers; write them in N m, as --torques 10,50,100") from error
     with warnings.catch_warnings() if json else console.notes():
-        path = api.export_fmu(console.load_with(model, set_), output, fmi=fmi, kind=kind, schedule=schedule)
+        loaded = console.load_with(model, set_)
+        path = api.export_fmu(loaded, output, fmi=fmi, kind=kind, schedule=schedule, order=order, tolerance=tolerance)
     if json:
         console.print_json({"fmu": path, "kind": kind, "fmi": fmi, "bytes": path.stat().st_size})
     else:

@@ -24,7 +24,8 @@ def layout(content: bytes):
     names += ["text", "tones", "source", "pairs", "points"]
     n = dict(zip(names, struct.unpack_from("<14I", content, HEADER)))
     N = n["N"]
-    doubles = 4 + 3 * N + n["groups"] * (1 + N) + 2 * n["rows"] * N + 2 * n["blocks"] + 2 * n["loads"] * N + n["outputs"] * N
+    doubles = 4 + (3 + n["groups"]) * N + n["groups"] + 2 * n["blocks"]
+    doubles += (2 * n["rows"] + 2 * n["loads"] + n["outputs"]) * N
     doubles += 4 * n["pairs"] + 2 * n["pairs"] * N + 4 * n["tones"]
     doubles += n["points"] * (1 + 2 * n["blocks"])
     at, sections = DATA + 8 * doubles, {}

@@ -4,6 +4,7 @@ import re
 import warnings
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from .._version import __version__
 from ..errors import InputError
@@ -15,6 +16,7 @@ from ..numerics.arrays import Real
 from .documentation import BAND
 from .native import export_native
 from .python_kind import export_python
+from .reduction import RECORD, ReductionRequest, record_of, reduced_for
 from .scheduled import check_schedule
 
 KINDS = ("native", "python")
@@ -38,13 +40,14 @@ def export(
     documentation: bool = True,
     band: tuple[float, float] = BAND,
     schedule: Schedule | None = None,
+    reduction: ReductionRequest | None = None,
 ) -> Path:
     """Write the FMU to `path` (a temporary file is moved there at the end) and return the path.
 
     `frequency` (Hz) is the start value of the input of that name. `documentation` adds plots over the `band`
     (Hz) and reference results to the native kind. With a `schedule` the native kind has the input operation.torque,
-    which decides the matrices of its joints. Raises InputError for an unknown kind or version of FMI, a schedule that
-    cannot be used, and a path that cannot be written.
+    which decides the matrices of its joints; `reduction` makes it smaller. Raises InputError for an unknown kind or
+    version of FMI, a schedule or a reduction that cannot be used, and a path that cannot be written.
     """
     if kind not in KINDS:
         raise InputError(f"kind: there is no kind {kind!r} of FMU; use one of: {', '.join(KINDS)}")
@@ -54,14 +57,9 @@ def export(
         raise InputError("fmi: pythonfmu makes FMUs of FMI 2.0 only; use the native kind for FMI 3.0")
     if kind == "python" and schedule is not None:
         raise InputError("schedule: the python kind has none; use the native kind for stiffness over the torque")
-    if path.suffix.lower() != ".fmu" and not path.is_dir():
-        raise InputError(f"{path}: the name of an FMU ends in .fmu, or importers do not take it")
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder; give the name of the FMU file to write")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{path.parent}: cannot be made ({error.strerror}); choose another place") from error
+    if kind == "python" and reduction is not None:
+        raise InputError("order, tolerance: the python kind is the whole solver; use the native kind for reduced FMUs")
+    check_target(path)
     settings = {
         "model_identifier": model_identifier(system.name),
         "description": f"Structure-borne noise power flow of {system.name}",
@@ -71,13 +69,30 @@ def export(
     try:
         if kind == "native":
             network = prepared(system, schedule)
-            more = {"fmi": fmi, "documentation": documentation, "band": band}
+            more: dict[str, Any] = {"fmi": fmi, "documentation": documentation, "band": band}
+            if reduction is not None:
+                reduced = reduced_for(network, reduction)
+                network = reduced.network
+                more["extra_files"] = {RECORD: record_of(reduced.certificate)}
+                settings["description"] = f"{settings['description']} ({reduced.certificate})"
             return export_native(network, path, **settings, **more)  # type: ignore[arg-type]
         if system.source is not None:
             warnings.warn(SOURCELESS, stacklevel=3)
         return export_python(system, path, **settings)  # type: ignore[arg-type]
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror}); choose another place") from error
+
+
+def check_target(path: Path) -> None:
+    """Refuse a path that no FMU can be written to, and make the folder that it lies in."""
+    if path.suffix.lower() != ".fmu" and not path.is_dir():
+        raise InputError(f"{path}: the name of an FMU ends in .fmu, or importers do not take it")
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder; give the name of the FMU file to write")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{path.parent}: cannot be made ({error.strerror}); choose another place") from error
 
 
 def started(system: System, schedule: Schedule | None) -> System:

@@ -1,5 +1,6 @@
 """Linear algebra across frequency lines: arrays are (..., F), the line last, so that one operation serves all lines."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -21,7 +22,7 @@ def chunks(lines: int, bytes_per_line: int) -> Iterator[slice]:
 
 def real_times_complex(A: Real, x: Complex) -> Complex:
     """A @ x for a real matrix (m, n) and complex lines (n, ...): one real product instead of a complex one."""
-    flat = np.ascontiguousarray(x).reshape(x.shape[0], -1)
+    flat = np.ascontiguousarray(x).reshape(x.shape[0], math.prod(x.shape[1:]))
     product = A @ flat.view(np.float64)
     return product.view(np.complex128).reshape(A.shape[0], *x.shape[1:])
 

@@ -17,12 +17,14 @@ from ...network.records import Load, Schedule
 from ...network.system import System
 from ...network.time_twin import time_twin
 from ...numerics.arrays import Real
+from ...statespace.reduced import Certificate
 from ..binary import scheduled_torques
 from ..checks import Check, Comparison, ValidationReport
 from ..conformance import Finding, Severity, check_conformance
 from ..export import export, prepared, started
 from ..native_table import native_table
 from ..python_bearings import decided_by_design
+from ..reduction import RECORD, certificate_from, reduced_for, request_of, worst_error
 from ..simulation import running
 from ..variables import variable_table
 from . import chirp, measure, schedule, source, spectrum, tones
@@ -61,8 +63,11 @@ def validate(
     `message` is told what begins, `advance` the part of the whole work that was done. Raises InputError where the
     file is no FMU.
     """
-    kind = kind_of(path)
-    network = prepared(system, scheduled)
+    kind, certificate = kind_of(path), certificate_of(path)
+    complete = network = prepared(system, scheduled)
+    if certificate is not None:
+        message("reduction of the model to the order of the FMU")
+        network = reduced_for(complete, request_of(certificate)).network
     system = started(system, scheduled)  # for the other kind, which has no schedule
     if kind == "python":
         network = replace(network, decided=decided_by_design(system))
@@ -76,6 +81,8 @@ def validate(
     try:
         checks.append(same_model(path, network, kind, band[0]))
         if checks[-1].passed:
+            if certificate is not None:
+                checks.append(_reduction_check(complete, network, certificate))
             checks += _physics(path, system, network, kind, band, comparisons, message, advance)
     except MissingExtraError:
         raise
@@ -128,8 +135,9 @@ def _physics(
             fmu.start(source.silenced(network, kind))
             checks += schedule.checks(fmu, network, network.schedule, band, limits.spectrum, limits.schedule)
     other = "python" if kind == "native" else "native"
-    message(f"{kind} against {other} kind")
-    checks.append(_kinds_check(system, network, band, signals, found, other, limits.kinds))
+    if certificate_of(path) is None:  # the other kind is never reduced
+        message(f"{kind} against {other} kind")
+        checks.append(_kinds_check(system, network, band, signals, found, other, limits.kinds))
     advance(0.15)
     if is_free(network):  # it drifts for ever
         message("no sine steady state: the machine is not held to the ground")
@@ -170,6 +178,27 @@ def torques_of(path: Path) -> list[float]:
             return [float(torque) for torque in scheduled_torques(archive.read("resources/model.bin"))]
         except (InputError, zipfile.BadZipFile):
             return []  # the checks of the file say what is wrong
+
+
+def certificate_of(path: Path) -> Certificate | None:
+    """The certificate that a reduced FMU carries; None of a complete one. Raises InputError as `kind_of`."""
+    if kind_of(path) != "native":
+        return None
+    with zipfile.ZipFile(path) as archive:
+        if RECORD not in archive.namelist():
+            return None
+        return certificate_from(archive.read(RECORD))
+
+
+def _reduction_check(complete: ModalNetwork, network: ModalNetwork, certificate: Certificate) -> Check:
+    """The error of the reduction over a fresh grid, against the one that the FMU carries."""
+    found = worst_error(complete, network, certificate)
+    return Check(
+        "reduction against the complete model",
+        found,
+        certificate.error,
+        f"relative error at order {certificate.order} of {certificate.complete}, limit as certified",
+    )
 
 
 def standard_check(path: Path) -> Check:
