@@ -9,6 +9,7 @@ from reduction_cases import beam, coupled, poles_of, random_network, responses, 
 
 from gearpath.statespace.reduced import Comparison, reduced_network
 from gearpath.statespace.reduced.passivity import is_passive_network
+from gearpath.statespace.reduction import reduce
 
 BAND = (50.0, 8000.0)
 
@@ -148,3 +149,38 @@ def test_the_comparison_sees_a_narrow_resonance():
     found = comparison.deviation(lambda w: responses(shifted, w), poles_of(shifted)[0])
     true = true_error(network, shifted, BAND, density=40)
     assert true <= found.error <= 1.05 * true
+
+
+def test_a_tolerance_beyond_the_shifts_gives_the_complete_network():
+    network = random_network(11)
+    found = reduced_network(network, tolerance=1e-11, band=(60.0, 3000.0))
+    assert found.certificate.order == found.certificate.complete == len(network.eigenvalues)
+    assert found.certificate.error < 1e-9
+    np.testing.assert_array_equal(found.network.damping, network.damping)
+
+
+@pytest.mark.parametrize("order", [8, 16])
+def test_balanced_truncation_of_the_beam_is_not_passive_and_says_so(order):
+    """Four ports; the negative power is found by sampling too, in 1e-4 of the largest gain."""
+    free = beam()
+    rows = np.vstack([free.loads[0].column, free.loads[3].column])
+    mounts = replace(
+        free.joints[0],
+        source=rows,
+        receiver=0 * rows,
+        dofs=("ux", "uy"),
+        stiffness=1e6 * np.eye(2),
+        damping=50 * np.eye(2),
+    )
+    network = replace(free, joints=(mounts,))
+    found = reduce(network, order, None, BAND, "balanced")
+    w = 2 * np.pi * np.geomspace(1.0, 1e6, 4000)
+    H = np.moveaxis(found(1j * w), -1, 0)
+    assert np.linalg.eigvalsh(H + H.conj().swapaxes(1, 2)).min() < -1e-5 * abs(H).max()
+    assert not found.certificate.passive
+    assert found.certificate.stable
+    exact = responses(network, w[(w > 2 * np.pi * BAND[0]) & (w < 2 * np.pi * BAND[1])])
+    there = H[(w > 2 * np.pi * BAND[0]) & (w < 2 * np.pi * BAND[1])]
+    assert (abs(there - exact).max(axis=0) <= found.certificate.error * abs(exact).max(axis=0)).all()
+    krylov = reduce(network, order, None, BAND, "rational_krylov")
+    assert krylov.certificate.passive

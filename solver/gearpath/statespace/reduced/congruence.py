@@ -32,6 +32,11 @@ def blended(eigenvalues: Real, shapes: Real) -> Basis:
     return Basis(shapes @ T, np.maximum(mu, 0.0))
 
 
+def whole(eigenvalues: Real) -> Basis:
+    """All modes of a component, as they are."""
+    return Basis(np.eye(len(eigenvalues)), eigenvalues)
+
+
 def congruent(network: ModalNetwork, bases: Mapping[str, Basis]) -> ModalNetwork:
     """The network of viscous damping on these coordinates of its components.
 

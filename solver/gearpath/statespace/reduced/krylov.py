@@ -15,7 +15,7 @@ import scipy.linalg
 
 from ...network.modal import ModalNetwork
 from ...numerics.arrays import Real
-from .congruence import Basis, blended, component_rows
+from .congruence import Basis, blended, component_rows, whole
 from .damping import blend_shares
 
 Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]
@@ -88,8 +88,8 @@ class RationalKrylov:
 
     @property
     def most(self) -> int:
-        """The largest order."""
-        return len(self._ranking)
+        """The largest order: that of the complete network."""
+        return len(self.network.eigenvalues)
 
     def _without_ties(self, order: int) -> int:
         """`order`, or less where it would part coordinates that a symmetry of the machine makes equal.
@@ -97,9 +97,9 @@ class RationalKrylov:
         Which of them came first would be rounding, and the model not the same twice. More where there is no less.
         """
         fewer, more = order, order
-        while 0 < fewer < self.most and self._are_equal(fewer):
+        while 0 < fewer < len(self._ranking) and self._are_equal(fewer):
             fewer -= 1
-        while 0 < more < self.most and self._are_equal(more):
+        while 0 < more < len(self._ranking) and self._are_equal(more):
             more += 1
         return fewer or more
 
@@ -109,7 +109,13 @@ class RationalKrylov:
         return kind == next_kind and abs(last - following) <= _EQUAL * abs(last)
 
     def bases(self, order: int) -> dict[str, Basis]:
-        """Bases of all components with `order` coordinates in all, or a few less."""
+        """Bases of all components with `order` coordinates in all, or a few less; at the largest order all modes.
+
+        Below it there are no more than the shifts tell apart in double precision.
+        """
+        if order >= self.most:
+            blocks = self.network.components.items()
+            return {name: whole(self.network.eigenvalues[block]) for name, block in blocks}
         chosen = self._ranking[: self._without_ties(order)]
         out = {}
         for name, (modes, vectors, _) in self._parts.items():
