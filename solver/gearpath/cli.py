@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -90,6 +91,7 @@ def fmu(
 ) -> None:
     """Export the model as an FMU."""
     from . import api
+    from .fmu.reduction import certificate_of
 
     fmi = {"2": "2.0", "3": "3.0"}.get(fmi, fmi)
     try:
@@ -98,11 +100,18 @@ def fmu(
         raise InputError(f"--torques {torques}: are no numbers; write them in N m, as --torques 10,50,100") from error
     with warnings.catch_warnings() if json else console.notes():
         loaded = console.load_with(model, set_)
-        path = api.export_fmu(loaded, output, fmi=fmi, kind=kind, schedule=schedule, order=order, tolerance=tolerance)
+        with console.working(f"exporting {loaded.name}", quiet=json):
+            path = api.export_fmu(
+                loaded, output, fmi=fmi, kind=kind, schedule=schedule, order=order, tolerance=tolerance
+            )
+    found = certificate_of(path)
     if json:
-        console.print_json({"fmu": path, "kind": kind, "fmi": fmi, "bytes": path.stat().st_size})
+        written = {"fmu": path, "kind": kind, "fmi": fmi, "bytes": path.stat().st_size}
+        console.print_json(written | ({"reduction": asdict(found)} if found else {}))
     else:
         console.out.print(f"wrote {path} ({kind} kind, FMI {fmi}, {path.stat().st_size / 1e3:.0f} kB)", markup=False)
+        if found:
+            console.out.print(str(found), markup=False)
 
 
 @app.command()

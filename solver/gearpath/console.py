@@ -7,7 +7,7 @@ import sys
 import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -103,6 +103,13 @@ def progress(title: str, total: float, quiet: bool = False) -> Iterator[Bar]:
             lambda amount: bar.advance(task, amount),
             lambda what: bar.update(task, description=f"{title}: {what}"),
         )
+
+
+@contextmanager
+def working(title: str, quiet: bool = False) -> Iterator[None]:
+    """A sign on stderr that work of unknown length goes on."""
+    with nullcontext() if quiet else err.status(escape(title)):
+        yield
 
 
 def print_json(data: Any) -> None:

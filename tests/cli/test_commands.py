@@ -92,6 +92,17 @@ def test_an_fmu_is_written_and_described(run, tmp_path):
     assert json.loads(out)["bytes"] == (tmp_path / "deep" / "it.fmu").stat().st_size
 
 
+def test_a_reduced_fmu_says_how_far_it_is_off(run, tmp_path):
+    code, out, _ = run("fmu", MODEL, "-o", tmp_path / "it.fmu", "--tolerance", "1e-2")
+    assert code == 0
+    assert "order 24 of 72" in out
+    code, out, _ = run("fmu", MODEL, "-o", tmp_path / "it.fmu", "--order", "30", "--json")
+    assert json.loads(out)["reduction"]["order"] == 30
+    code, _, err = run("fmu", MODEL, "-o", tmp_path / "it.fmu", "--order", "30", "--tolerance", "0.01")
+    assert code == 2
+    assert "give one of the two" in err
+
+
 def test_schema_is_printed(run):
     code, out, _ = run("schema")
     assert code == 0

@@ -1,7 +1,9 @@
 """Reduced FMUs: which reduction was asked for, what came of it, and the same again when the FMU is checked."""
 
 import json
+import zipfile
 from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -69,11 +71,16 @@ def record_of(certificate: Certificate) -> bytes:
     return json.dumps(asdict(certificate), indent=1, sort_keys=True).encode()
 
 
-def certificate_from(content: bytes) -> Certificate:
-    """The certificate that an FMU carries. Raises InputError for a damaged one."""
+def certificate_of(path: Path) -> Certificate | None:
+    """The certificate that a reduced FMU carries; None of any other file. Raises InputError for a damaged one."""
     try:
-        values = json.loads(content)
+        with zipfile.ZipFile(path) as archive:
+            if RECORD not in archive.namelist():
+                return None
+            values = json.loads(archive.read(RECORD))
         pair, band = tuple(map(str, values.pop("pair"))), tuple(map(float, values.pop("band")))
         return Certificate(pair=(pair[0], pair[1]), band=(band[0], band[1]), **values)
+    except (OSError, zipfile.BadZipFile):
+        return None
     except (ValueError, TypeError, KeyError, IndexError, AttributeError) as error:
-        raise InputError(f"{RECORD} cannot be read; export the FMU again") from error
+        raise InputError(f"{path}: {RECORD} cannot be read; export the FMU again") from error

@@ -24,7 +24,7 @@ from ..conformance import Finding, Severity, check_conformance
 from ..export import export, prepared, started
 from ..native_table import native_table
 from ..python_bearings import decided_by_design
-from ..reduction import RECORD, certificate_from, reduced_for, request_of, worst_error
+from ..reduction import certificate_of, reduced_for, request_of, worst_error
 from ..simulation import running
 from ..variables import variable_table
 from . import chirp, measure, schedule, source, spectrum, tones
@@ -178,16 +178,6 @@ def torques_of(path: Path) -> list[float]:
             return [float(torque) for torque in scheduled_torques(archive.read("resources/model.bin"))]
         except (InputError, zipfile.BadZipFile):
             return []  # the checks of the file say what is wrong
-
-
-def certificate_of(path: Path) -> Certificate | None:
-    """The certificate that a reduced FMU carries; None of a complete one. Raises InputError as `kind_of`."""
-    if kind_of(path) != "native":
-        return None
-    with zipfile.ZipFile(path) as archive:
-        if RECORD not in archive.namelist():
-            return None
-        return certificate_from(archive.read(RECORD))
 
 
 def _reduction_check(complete: ModalNetwork, network: ModalNetwork, certificate: Certificate) -> Check:
