@@ -98,13 +98,15 @@ class Comparison:
         H, found = self.exact(grid), respond(grid)
         worst = self._worst(grid, H, found)
         for _ in range(_ROUNDS):
+            if worst.error < _ROUNDING:
+                break
             new = between(grid, self._peaks(H, found))
             new = new[~np.isin(new, grid)]
             grid, place = np.unique(np.concatenate([grid, new]), return_index=True)
             H = np.concatenate([H, self.exact(new)])[place]
             found = np.concatenate([found, respond(new)])[place]
             last, worst = worst, self._worst(grid, H, found)
-            if abs(worst.error - last.error) <= _STANDS * last.error or worst.error < _ROUNDING:
+            if abs(worst.error - last.error) <= _STANDS * last.error:
                 break
         return Deviation(_MARGIN * worst.error, worst.frequency, worst.output, worst.input)
 
