@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import ArrayLike
 
 from .errors import InputError
+from .fitting import fit_mobility
 from .modelfile import Model, load
 from .network.assemble import assemble
 from .network.modal import ModalNetwork
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
     from .fmu.checks import ValidationReport
     from .fmu.linearization import Linearization
+    from .identification import JointIdentification
     from .joints.bearings import Equilibrium
     from .statespace.frd import FrequencyResponse
     from .statespace.reduction import ReducedStateSpace
@@ -36,9 +38,12 @@ __all__ = [
     "amplitude",
     "expected_power",
     "export_fmu",
+    "fit_mobility",
     "frequency_response",
+    "identify_joint",
     "linearize",
     "load",
+    "measure_joint",
     "modal_network",
     "natural_frequencies",
     "operating_point",
@@ -213,6 +218,55 @@ def _band(model: Model, band: tuple[float, float] | None) -> tuple[float, float]
     except (TypeError, ValueError) as error:
         raise InputError(f"band: {band!r} is not a pair of frequencies; give (start, stop) in Hz") from error
     return low, high
+
+
+def measure_joint(
+    model: Model,
+    frequencies_hz: ArrayLike | None = None,
+    joints: str | Iterable[str] | None = None,
+    *,
+    noise: float = 0.0,
+    seed: int | None = None,
+    connected: bool = True,
+) -> xr.DataArray:
+    """Mobilities that a measurement on both sides of joints would give, (frequency, motion, force), SI.
+
+    Ports are named bearing_1.source.uy, bearing_1.receiver.uy ...; joints: all power flow paths where left out. noise:
+    sqrt(E|e|^2) / |Y_ij| of independent circular complex Gaussian noise on every entry, from the random `seed`.
+    connected: False takes the joints out of the machine, for `without` of `identify_joint`. Raises InputError for
+    joints that do not exist or stand on the ground.
+    """
+    from .results.identified import labelled_measurement
+
+    f = model.frequencies() if frequencies_hz is None else frequencies_hz
+    return labelled_measurement(modal_network(model), f, joints, noise, seed, connected)
+
+
+def identify_joint(
+    mobility: ArrayLike | xr.DataArray,
+    frequencies_hz: ArrayLike | None = None,
+    joints: Mapping[str, Sequence[str]] | None = None,
+    *,
+    noise: ArrayLike | None = None,
+    without: ArrayLike | xr.DataArray | None = None,
+) -> JointIdentification:
+    """K and C of joints in situ, from mobilities of the assembled machine on both sides, with confidence intervals.
+
+    mobility: (F, 2 n, 2 n), velocity by force, e^(+i w t): the source sides of all joints that connect the two parts,
+    then their receiver sides; or with names, as `measure_joint` gives it. joints: name -> degrees of freedom, n in
+    all. Nothing is known of the two parts, which may be rigid: K and C minimise the adjustment of the mobilities, in
+    parts of their noise, that makes
+
+        rank [[I + Z Y_ba, Z Y_bb], [Y_aa, Y_ab]] = n,   Z = K / (i w) + C  block-diagonal, K and C symmetric
+
+    noise: relative noise sqrt(E|e|^2) / |Y_ij| of one FRF, or standard deviations (F, 2 n, 2 n); left out, it is found
+    from the data. without: mobilities at the same ports with these joints taken out, from a model or another
+    measurement: then they alone are needed, whatever else connects the parts. Raises InputError for data that cannot
+    be mobilities on both sides, and AccuracyError where noise hides the joints. See docs/identification.md.
+    """
+    from .results.identified import identified
+
+    return identified(mobility, frequencies_hz, joints, noise, without)
 
 
 def to_frd(

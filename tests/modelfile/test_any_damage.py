@@ -37,9 +37,7 @@ SCALARS = st.one_of(
     st.just(10**400),
     st.floats(),
     st.text(max_size=8),
-    st.sampled_from(
-        ["train", "train.input@0.1", "casing", "ground", "train.mesh", "uy", "30 mm", "{problem}"]
-    ),
+    st.sampled_from(["train", "train.input@0.1", "casing", "ground", "train.mesh", "uy", "30 mm", "{problem}"]),
     st.just(date(2024, 1, 1)),
 )
 VALUES = st.recursive(

@@ -70,14 +70,10 @@ def test_diameter_replaces_sections_and_back(model):
     changed = model.replace({f"{shaft}.length": 0.2, f"{shaft}.diameter": 0.05})
     assert [section.outer for section in train(changed).shafts["output"].sections] == [0.05]
     assert (
-        changed.replace(
-            {f"{shaft}.sections": model.to_dict()["components"]["train"]["shafts"]["output"]["sections"]}
-        )
+        changed.replace({f"{shaft}.sections": model.to_dict()["components"]["train"]["shafts"]["output"]["sections"]})
         == model
     )
-    with pytest.raises(
-        ModelError, match=r"output.length: is missing; give length and diameter in m, or sections"
-    ):
+    with pytest.raises(ModelError, match=r"output.length: is missing; give length and diameter in m, or sections"):
         model.replace({f"{shaft}.diameter": 0.05})
 
 
@@ -125,7 +121,5 @@ def test_refused(model, path, value, message):
 
 
 def test_path_must_be_text(model):
-    with pytest.raises(
-        ModelError, match=r'3: this is not a path; write it as text, "joints.bearing_1.stiffness"'
-    ):
+    with pytest.raises(ModelError, match=r'3: this is not a path; write it as text, "joints.bearing_1.stiffness"'):
         model.replace({3: 1.0})

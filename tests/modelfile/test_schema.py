@@ -33,15 +33,13 @@ def test_is_a_schema():
 
 def test_stored_copy_is_the_generated_one():
     """Regenerate: python -c "from gearpath.modelfile.joint_tables import MatrixJointTable
-from gearpath.modelfile.schema import schema_text as s; print(s(), end='')"."""
+    from gearpath.modelfile.schema import schema_text as s; print(s(), end='')"."""
     stored = (ROOT / "models" / "gearpath.schema.json").read_text(encoding="utf-8")
     assert stored == schema_text()
     assert json.loads(stored) == SCHEMA
 
 
-@pytest.mark.parametrize(
-    "path", [*(ROOT / "models").glob("*.toml"), HERE / "base.toml"], ids=lambda p: p.stem
-)
+@pytest.mark.parametrize("path", [*(ROOT / "models").glob("*.toml"), HERE / "base.toml"], ids=lambda p: p.stem)
 def test_models_are_valid(path):
     VALIDATOR.validate(tomllib.loads(path.read_text(encoding="utf-8")))
 
@@ -89,6 +87,10 @@ def test_every_number_has_a_unit():
         ("BeamJointTable", "shear_coefficient"),
         ("BeamTable", "shear_coefficient"),
         ("FrameTable", "loss_factor"),
+        ("MatricesTable", "loss_factor"),
+        ("MatricesTable", "modal_damping"),
+        ("MeasuredTable", "tolerance"),
+        ("ModalTable", "loss_factor"),
         ("FrameTable", "modal_damping"),
         ("GearTrainTable", "modal_damping"),
         ("BearingTable", "loss_factor"),

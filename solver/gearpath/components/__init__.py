@@ -1,4 +1,4 @@
-"""Structures known by what they do at named ports: shaft trains, rigid bodies, plates and frames."""
+"""Structures known by what they do at named ports: shaft trains, rigid bodies, plates, frames, measured ones."""
 
 from .cross_section import BarSection
 from .dofs import DOFS, ROTATIONS, TRANSLATIONS
@@ -8,6 +8,9 @@ from .frame_beam import FrameBeam
 from .gear_mesh import Mesh
 from .gear_train import GearTrain
 from .material import Material
+from .matrices import Matrices
+from .measured import Measured
+from .modal_model import ModalModel, modal_model
 from .modes import Modes, modes
 from .plate import Plate
 from .rigid_body import RigidBody
@@ -26,7 +29,10 @@ __all__ = [
     "FrameBeam",
     "GearTrain",
     "Material",
+    "Matrices",
+    "Measured",
     "Mesh",
+    "ModalModel",
     "Modes",
     "Plate",
     "RigidBody",
@@ -34,5 +40,6 @@ __all__ = [
     "Shaft",
     "ShaftPoint",
     "Structure",
+    "modal_model",
     "modes",
 ]

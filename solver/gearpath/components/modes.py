@@ -52,7 +52,7 @@ def modes(structure: Structure) -> Modes:
     elastic = vectors[:, count:]
     elastic -= R @ (R.T @ (M @ elastic))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # judged below
-        elastic, eigenvalues = _sharpen(elastic, K, M)
+        elastic, eigenvalues = sharpen(elastic, K, M)
     skew = abs(elastic.T @ M @ elastic - np.eye(len(eigenvalues))).max(initial=0.0)
     if len(eigenvalues) and not (skew < _SKEW and eigenvalues.min() > _FLOOR * rough[-1]):
         raise AccuracyError(
@@ -64,7 +64,7 @@ def modes(structure: Structure) -> Modes:
     return Modes(np.concatenate([np.zeros(count), eigenvalues[order]]), np.hstack([R, elastic[:, order]]))
 
 
-def _sharpen(shapes: Real, K: Real, M: Real) -> tuple[Real, Real]:
+def sharpen(shapes: Real, K: Real, M: Real) -> tuple[Real, Real]:
     """Iterative refinement of all modes together (Ogita and Aishima 2018), and their Rayleigh quotients.
 
     The eigensolver's error is relative to the highest eigenvalue, 1e9 times that of the first bending modes. The

@@ -20,6 +20,7 @@ class Structure:
     ports: Mapping[str, Real]  # port name -> (6, n): motion ux uy uz rx ry rz of the port = rows @ q
     meshes: Mapping[str, "MeshMotion"] = field(default_factory=dict)
     loss_factor: float = 0.0
+    damping_ratios: Real | None = None  # (n,), where the coordinates are the modes themselves, each with its own
 
     @property
     def size(self) -> int:

@@ -15,7 +15,7 @@ from ..network.system import System
 from .python_settings import Entry
 
 _SOLVER = Path(__file__).resolve().parents[1]
-_FLOORS = ("numerics", "components", "joints", "reduction", "network")
+_FLOORS = ("numerics", "components", "joints", "reduction", "fitting", "network")
 _RUNNING = ("python_parts.py", "python_bearings.py", "python_design.py", "python_settings.py", "python_machine.py")
 _TEMPLATES = ("entry.py", "slave.py")
 # where hatch_build.py puts them, and where they are in a checkout, which counts more

@@ -11,6 +11,8 @@ from pathlib import Path
 
 from ..errors import GearpathError, InputError, MissingExtraError
 from ..network.assemble import assemble
+from ..network.contained import self_contained
+from ..network.measured import fitted_system
 from ..network.system import System
 from .description import Experiment, Identity, model_description
 from .native import check_arguments, check_network, content_guid
@@ -64,6 +66,7 @@ def export_python(
     `frequency` (Hz) is the start value of the input of that name; times in s; `extra_files` go into the FMU
     under their names. The same arguments give the same bytes; the GUID is a hash of the content. What the FMU
     needs of its host is written in its documentation. A gear mesh source is left out: it is of the native kind.
+    Measured components are in it as the modes of their fits, matrices as their modes.
 
     Raises:
         InputError: the system, a name or a time cannot be used.
@@ -71,7 +74,7 @@ def export_python(
     """
     check_arguments(model_identifier, start_time, stop_time, step_size)
     base = _base_fmu(model_identifier)
-    system = replace(system, source=None)
+    system = replace(self_contained(fitted_system(system)), source=None)
     network = assemble(system).modal().viscous()
     check_network(network)
     variables = python_table(system, network, frequency)

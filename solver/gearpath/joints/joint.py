@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
 Vector = tuple[float, float, float]
 Matrix = tuple[tuple[float, ...], ...]
+RIGID = "rigid"  # the kind that holds two ports together exactly; it has no matrices, and () holds all common `dofs`
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class Joint:
     `at` is the place on the rigid body; None where the other end is a shaft station, which then gives it.
     """
 
-    kind: str  # "bearing" | "mount" | "beam_joint"
+    kind: str  # "bearing" | "mount" | "beam_joint" | "rigid"
     between: tuple[Port, Port]  # source, receiver: the joint's force acts on the receiver
     dofs: tuple[str, ...]
     stiffness: Matrix

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ..components import Disk, GearTrain, Mesh, RigidBody, Section, Shaft
-from ..joints import Joint, Port, beam_joint
+from ..joints import RIGID, Joint, Port, beam_joint
 from ..joints.joint import Matrix
 from ..network.records import MeshSource, Tone
 from ..network.system import (
@@ -18,11 +18,16 @@ from ..network.system import (
 )
 from .bearing_tables import OperationTable
 from .build_bearings import build_mounting, catalogue_of
+from .build_foreign import build_matrices, build_modal
+from .build_measured import build_measured
 from .build_structures import build_frame, build_material, build_plate, shear_coefficient_of
-from .joint_tables import BeamJointTable, BearingTable, JointTable
+from .foreign_tables import MatricesTable, ModalTable
+from .joint_tables import BeamJointTable, BearingTable, JointTable, RigidJointTable
+from .measured_tables import MeasuredTable
 from .references import beam_offset, find_driving_shaft, find_gear, find_mesh, find_port, mesh_names
 from .source_tables import SourceTable
 from .structure_tables import FrameTable, PlateTable
+from .supplied import shared_dofs
 from .tables import ActuatorTable, ComponentTable, ExcitationTable, FileTable, RigidBodyTable
 from .train_tables import GearTrainTable, MeshTable, SectionTable, ShaftTable
 
@@ -32,7 +37,7 @@ def build_system(file: FileTable, folder: Path) -> System:
     return System(
         name=file.name,
         dofs=file.dofs,
-        components={name: _component(file, table) for name, table in file.components.items()},
+        components={name: _component(file, table, name, folder) for name, table in file.components.items()},
         joints={name: _joint(file, table, name, folder) for name, table in file.joints.items()},
         excitation=_excitation(file, file.excitation),
         actuators={name: Actuator(_port(file, table), table.dof, _at(table)) for name, table in file.actuators.items()},
@@ -45,14 +50,20 @@ def build_system(file: FileTable, folder: Path) -> System:
         vectors={
             name: table.vectors
             for name, table in file.components.items()
-            if isinstance(table, (PlateTable, FrameTable)) and table.vectors is not None
+            if isinstance(table, (PlateTable, FrameTable, MatricesTable)) and table.vectors is not None
         },
         source=None if file.source is None else _source(file, file.source),
         operation=None if file.operation is None else _operation(file, file.operation),
     )
 
 
-def _component(file: FileTable, table: ComponentTable) -> Component:
+def _component(file: FileTable, table: ComponentTable, name: str, folder: Path) -> Component:
+    if isinstance(table, MatricesTable):
+        return build_matrices(table, folder, file.dofs, f"components.{name}")
+    if isinstance(table, ModalTable):
+        return build_modal(table, folder, f"components.{name}")
+    if isinstance(table, MeasuredTable):
+        return build_measured(table, folder, f"components.{name}")
     if isinstance(table, PlateTable):
         return build_plate(file.materials, table)
     if isinstance(table, FrameTable):
@@ -105,6 +116,8 @@ def _joint(file: FileTable, table: JointTable, name: str, folder: Path) -> Joint
     first, second = (find_port(file, text, "between") for text in table.between)
     if isinstance(table, BeamJointTable):
         return _beam_joint(file, table, (first, second))
+    if isinstance(table, RigidJointTable):
+        return Joint(RIGID, (first, second), table.dofs or (), (), (), table.at)
     mounting = None
     if isinstance(table, BearingTable):
         mounting = build_mounting(table, file.dofs, f"joints.{name}", catalogue_of(file, folder))
@@ -115,7 +128,9 @@ def _joint(file: FileTable, table: JointTable, name: str, folder: Path) -> Joint
         time = table.damping_time or 0.0
         damping = tuple(tuple(time * value for value in row) for row in stiffness)
     scalar = isinstance(table.stiffness, float)
-    dofs = ("uy",) if scalar else file.dofs
+    dofs = ("uy",) if scalar else shared_dofs(file, (first, second))
+    if not scalar:
+        stiffness, damping = (_part(matrix, file.dofs, dofs) for matrix in (stiffness, damping))
     return Joint(
         table.kind,
         (first, second),
@@ -127,6 +142,12 @@ def _joint(file: FileTable, table: JointTable, name: str, folder: Path) -> Joint
         table.loss_factor,
         mounting=mounting,
     )
+
+
+def _part(matrix: Matrix, dofs: tuple[str, ...], kept: tuple[str, ...]) -> Matrix:
+    """Rows and columns of the degrees of freedom that a joint connects."""
+    places = [dofs.index(dof) for dof in kept]
+    return tuple(tuple(matrix[i][k] for k in places) for i in places)
 
 
 def _nothing(size: int) -> Matrix:

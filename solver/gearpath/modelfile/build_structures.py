@@ -47,8 +47,6 @@ def shear_coefficient_of(table: float | None, diameter: float, inner: float, poi
 
 def _beam(materials: Materials, table: BeamTable) -> FrameBeam:
     material = build_material(materials, table.material)
-    kappa = shear_coefficient_of(
-        table.shear_coefficient, table.diameter, table.inner_diameter, material.poisson_ratio
-    )
+    kappa = shear_coefficient_of(table.shear_coefficient, table.diameter, table.inner_diameter, material.poisson_ratio)
     section = BarSection.round(table.diameter, table.inner_diameter)
     return FrameBeam(table.between, material, section, kappa, table.elements, beam=table.beam)

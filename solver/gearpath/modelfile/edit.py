@@ -70,6 +70,4 @@ def _entries(place: object) -> dict[str, str | int]:
     if not isinstance(place, list):
         return {}
     names: dict[str, str | int] = {str(k): k for k in range(len(place))}
-    return {
-        item["name"]: k for k, item in enumerate(place) if isinstance(item, dict) and "name" in item
-    } | names
+    return {item["name"]: k for k, item in enumerate(place) if isinstance(item, dict) and "name" in item} | names

@@ -1,4 +1,4 @@
-"""Tables of joints: bearings and mounts with matrices, and bolted joints as short beams."""
+"""Tables of joints: bearings and mounts with matrices, bolted joints as short beams, and rigid ones."""
 
 from typing import Annotated, Literal
 
@@ -6,7 +6,7 @@ from pydantic import Field
 
 from ..joints.joint import Matrix, Vector
 from .bearing_tables import ByDof, GeometryTable, Loads
-from .forms import Impedance
+from .forms import Dofs, Impedance
 from .numbers import Quantity, Row
 from .table import Table
 from .words import Choice, Flag, Pair, Text
@@ -89,5 +89,14 @@ class BeamJointTable(Table):
     loss_factor: Annotated[float, _LOSS] = 0.0
 
 
-JointTable = BearingTable | MountTable | BeamJointTable
-JOINTS = ("bearing", "mount", "beam_joint")
+class RigidJointTable(Table):
+    """A rigid joint: both ends move alike, and their components as one; to the ground: the end does not move."""
+
+    kind: Annotated[Literal["rigid"], Field(description="Rigid joint")]
+    between: Annotated[tuple[str, str], _ENDS]
+    at: Annotated[Vector | None, _PLACE.named("place of the joint where neither of its ends gives it")] = None
+    dofs: Annotated[tuple[str, ...] | None, Dofs("degrees of freedom that are held (left out: all of dofs)")] = None
+
+
+JointTable = BearingTable | MountTable | BeamJointTable | RigidJointTable
+JOINTS = ("bearing", "mount", "beam_joint", "rigid")

@@ -39,9 +39,7 @@ class Quantity(Leaf):
 
     def _number(self, value: object) -> float:
         if isinstance(value, str):
-            raise wrong(
-                f"{show(value)} is text, not a number", f"give {self.wanted()}, without quotes or unit"
-            )
+            raise wrong(f"{show(value)} is text, not a number", f"give {self.wanted()}, without quotes or unit")
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise wrong(f"{show(value)} is not a number", f"give {self.wanted()}")
         try:

@@ -41,20 +41,12 @@ def _text(path: str | PathLike[str]) -> str:
 
 
 def _syntax_error(message: str, text: str, path: str) -> ModelError:
-    found = re.fullmatch(
-        r"(?P<what>.*) \(at (?:line (?P<line>\d+), column (?P<column>\d+)|end of document)\)", message
-    )
+    found = re.fullmatch(r"(?P<what>.*) \(at (?:line (?P<line>\d+), column (?P<column>\d+)|end of document)\)", message)
     if found is None:
         return ModelError("the file", f"is not TOML ({message})", "correct it", file=path)
     what = found["what"]
     last = max(len(text.splitlines()), 1)
-    where = (
-        f"line {found['line']}, column {found['column']}"
-        if found["line"]
-        else f"line {last} (end of the file)"
-    )
-    if what.startswith(
-        ("Cannot overwrite", "Cannot declare", "Cannot mutate", "Cannot redefine", "Duplicate")
-    ):
+    where = f"line {found['line']}, column {found['column']}" if found["line"] else f"line {last} (end of the file)"
+    if what.startswith(("Cannot overwrite", "Cannot declare", "Cannot mutate", "Cannot redefine", "Duplicate")):
         return ModelError(where, f"a key or table is given twice ({what})", "keep one of them", file=path)
     return ModelError(where, f"this is not TOML ({what})", "correct the line", file=path)

@@ -6,18 +6,20 @@ from math import inf, isfinite
 
 from ..errors import ModelError
 from ..joints import Port
+from .foreign_tables import MatricesTable, ModalTable
 from .hints import hint
 from .joint_tables import BeamJointTable
+from .measured_tables import MeasuredTable
 from .structure_tables import FrameTable, PlateTable
 from .tables import FileTable, RigidBodyTable
 from .train_tables import GearTrainTable, ShaftTable
 from .wording import show
 
+Ported = MatricesTable | ModalTable | MeasuredTable
+PORTED = (MatricesTable, ModalTable, MeasuredTable)
 SAME = 1e-9  # rounding of stations, relative to the shaft's length
 _NAME = r"[A-Za-z][A-Za-z0-9_]*"
-_PORT = re.compile(
-    rf"(?P<component>{_NAME})(?:\.(?P<shaft>{_NAME}))?(?:@(?P<z>[^@\s]+)|\.(?P<disk>{_NAME}))?"
-)
+_PORT = re.compile(rf"(?P<component>{_NAME})(?:\.(?P<shaft>{_NAME}))?(?:@(?P<z>[^@\s]+)|\.(?P<disk>{_NAME}))?")
 _FORMS = 'write "component.shaft@z", "component.shaft.disk", "component" or "ground"'
 
 
@@ -43,7 +45,7 @@ def find_port(file: FileTable, text: str, key: str) -> Port:
     name, shaft, z, disk = found.group("component", "shaft", "z", "disk")
     find("component", name, file.components, key)
     component = file.components[name]
-    if isinstance(component, (PlateTable, FrameTable)):
+    if isinstance(component, (PlateTable, FrameTable, *PORTED)):
         return _structure_port(name, component, text, key)
     if isinstance(component, RigidBodyTable):
         if text != name:
@@ -70,15 +72,19 @@ def find_port(file: FileTable, text: str, key: str) -> Port:
     return Port(name, shaft, z=_station(text, z, length(table), key))
 
 
-def _structure_port(name: str, table: PlateTable | FrameTable, text: str, key: str) -> Port:
-    """A footprint or the whole of a plate (with a place given by `at`), or a place of a frame."""
+def _structure_port(name: str, table: PlateTable | FrameTable | Ported, text: str, key: str) -> Port:
+    """A footprint or the whole of a plate (with a place given by `at`), a place of a frame, a port from elsewhere."""
     if isinstance(table, PlateTable) and text == name:
         return Port(name)
-    known = list(table.footprints) if isinstance(table, PlateTable) else places_of(table)
-    what = "footprint" if isinstance(table, PlateTable) else "place"
+    if isinstance(table, PORTED):
+        known, what, whole = list(table.ports), "port", f"{table.kind} component"
+    elif isinstance(table, PlateTable):
+        known, what, whole = list(table.footprints), "footprint", "plate"
+    else:
+        known, what, whole = places_of(table), "place", "frame"
     place = text[len(name) + 1 :]
     if place not in known:
-        problem = f"there is no {what} {show(text)}" if place else f"{show(text)} names no place on a frame"
+        problem = f"there is no {what} {show(text)}" if place else f"{show(text)} names no {what} on a {whole}"
         raise ModelError(key, problem, hint(text, [f"{name}.{other}" for other in known]))
     return Port(name, place=place)
 
@@ -138,7 +144,7 @@ def station_of(file: FileTable, port: Port) -> float | None:
 def place_of(file: FileTable, port: Port) -> tuple[float, float, float] | None:
     """Global place of a shaft station, a footprint or a node, m; None where the joint gives it."""
     train = None if port.is_ground else file.components[port.component]
-    if isinstance(train, (PlateTable, FrameTable)):
+    if isinstance(train, (PlateTable, FrameTable, *PORTED)):
         return _structure_place(train, port.place)
     z = station_of(file, port)
     if not isinstance(train, GearTrainTable) or port.shaft is None or z is None:
@@ -147,9 +153,11 @@ def place_of(file: FileTable, port: Port) -> tuple[float, float, float] | None:
     return (x0, y0, z0 + z)
 
 
-def _structure_place(table: PlateTable | FrameTable, place: str | None) -> tuple[float, float, float] | None:
+def _structure_place(table: PlateTable | FrameTable | Ported, place: str | None) -> tuple[float, float, float] | None:
     if place is None:
         return None
+    if isinstance(table, PORTED):
+        return table.ports[place].at
     if isinstance(table, PlateTable):
         return table.footprints[place].centre
     if place in table.nodes:

@@ -40,9 +40,7 @@ class PlateShape(Table):
 
     material: Annotated[str, Text("name of the material", "steel")]
     centre: Annotated[Vector, _PLACE.named("centre of the middle surface")]
-    lengths: Annotated[
-        tuple[float, float], Row("lengths along the two axes", _length("length of a side"), 2)
-    ]
+    lengths: Annotated[tuple[float, float], Row("lengths along the two axes", _length("length of a side"), 2)]
     thickness: Annotated[float, _length("thickness", 10.0)]
     axis_1: Annotated[Vector, _DIRECTION.named("first axis, in the plate")] = (1.0, 0.0, 0.0)
     axis_2: Annotated[Vector, _DIRECTION.named("second axis, in the plate, across the first")] = (0.0, 1.0, 0.0)

@@ -13,10 +13,12 @@ from ..components.dofs import DOFS
 from ..joints.joint import Vector
 from ..numerics.arrays import Real
 from .bearing_tables import OperationTable
+from .foreign_tables import MatricesTable, ModalTable
 from .forms import Dofs, Spot
 from .hints import hint
 from .joint_tables import JOINTS, JointTable
 from .leaf import is_table, wrong
+from .measured_tables import MeasuredTable
 from .numbers import Count, Quantity, Row
 from .source_tables import SourceTable
 from .structure_tables import FrameTable, PlateTable
@@ -65,8 +67,8 @@ class RigidBodyTable(Table):
     centre_of_gravity: Annotated[Vector, PLACE.named("centre of gravity")] = (0.0, 0.0, 0.0)
 
 
-ComponentTable = GearTrainTable | RigidBodyTable | PlateTable | FrameTable
-COMPONENTS = ("gear_train", "rigid_body", "plate", "frame")
+ComponentTable = GearTrainTable | RigidBodyTable | PlateTable | FrameTable | MatricesTable | ModalTable | MeasuredTable
+COMPONENTS = ("gear_train", "rigid_body", "plate", "frame", "matrices", "modal", "measured")
 
 
 def _known_kind(what: str, kinds: Sequence[str]) -> Callable[[Any], Any]:
@@ -135,15 +137,11 @@ class FileTable(Table):
     components: Annotated[Named[AnyComponent], Field(description="Components by name")]
     joints: Annotated[Named[AnyJoint], Field(description="Bearings, mounts and bolted joints by name")]
     excitation: Annotated[ExcitationTable, Field(description="What drives the machine")]
-    actuators: Annotated[
-        Named[ActuatorTable], Field(description="Additional inputs by name", default_factory=dict)
-    ]
-    sensors: Annotated[
-        Named[SensorTable], Field(description="Additional outputs by name", default_factory=dict)
-    ]
-    operation: Annotated[
-        OperationTable | None, Field(description="Steady torque that loads the rolling bearings")
-    ] = None
+    actuators: Annotated[Named[ActuatorTable], Field(description="Additional inputs by name", default_factory=dict)]
+    sensors: Annotated[Named[SensorTable], Field(description="Additional outputs by name", default_factory=dict)]
+    operation: Annotated[OperationTable | None, Field(description="Steady torque that loads the rolling bearings")] = (
+        None
+    )
     catalogue_file: Annotated[
         str, Text("file of further rolling bearings, beside the model file", "my_bearings.toml")
     ] = ""

@@ -33,9 +33,7 @@ def show(value: object) -> str:
 
 def dotted(parts: Iterable[object]) -> str:
     """A key as a dotted path, "joints.bearing_1.stiffness"; odd parts are quoted as in TOML."""
-    return ".".join(
-        part if isinstance(part, str) and re.fullmatch(r"[\w-]+", part) else show(part) for part in parts
-    )
+    return ".".join(part if isinstance(part, str) and re.fullmatch(r"[\w-]+", part) else show(part) for part in parts)
 
 
 def plain(value: object) -> object:

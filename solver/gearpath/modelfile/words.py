@@ -41,9 +41,7 @@ class Name(Leaf):
     def check(self, value: object) -> str:
         """The name."""
         if not isinstance(value, str) or not re.fullmatch(NAME, value):
-            raise wrong(
-                f"{show(value)} is not a valid name", "begin with a letter and use letters, digits and _ only"
-            )
+            raise wrong(f"{show(value)} is not a valid name", "begin with a letter and use letters, digits and _ only")
         return value
 
     def schema(self) -> dict[str, Any]:

@@ -9,12 +9,15 @@ import numpy as np
 import scipy.linalg
 from scipy.sparse import issparse
 
-from ..components import Modes, Structure
+from ..components import Measured, Modes, Structure
+from ..joints import RIGID
 from ..numerics.arrays import Real
 from .channels import joint_rows, load_columns, output_rows
+from .joined import joined
 from .modal import ModalNetwork
 from .ports import Ports
 from .records import JointRows, Load, Output
+from .rigid import RigidRows, groups, rigid_rows
 from .system import System
 
 _PATHS = ("bearing", "beam_joint")
@@ -32,6 +35,7 @@ class Network:
     loads: tuple[Load, ...]
     outputs: tuple[Output, ...]
     excitation: str
+    rigid: tuple[RigidRows, ...] = ()  # what rigid joints hold; they are not among `joints`
 
     @property
     def band(self) -> float:
@@ -46,17 +50,17 @@ class Network:
 
         A bearing into a component that is itself the first of `between` of another bearing (shaft to quill, quill to
         casing) is not counted: its power is counted where it goes on. Nothing goes on into the ground.
+        Rigidly joined components count as one: a bearing within them leads nowhere.
         """
-        bearings = {name: joint for name, joint in self.system.joints.items() if joint.kind in _PATHS}
-
-        def goes_on(name: str) -> bool:
-            receiver = bearings[name].between[1].component
-            return any(
-                joint.between[0].component == receiver and other != name and not joint.between[1].is_ground
-                for other, joint in bearings.items()
-            )
-
-        return tuple(name for name in bearings if not goes_on(name))
+        found = groups(self.rigid, self.system.components)
+        body = {name: group.name for group in found for name in group.components} | {"ground": "ground"}
+        ends = {
+            name: [body[port.component] for port in joint.between]
+            for name, joint in self.system.joints.items()
+            if joint.kind in _PATHS
+        }
+        onward = {source for source, receiver in ends.values() if receiver not in (source, "ground")}
+        return tuple(name for name, (source, receiver) in ends.items() if receiver not in {source, *onward})
 
     def modal(self) -> ModalNetwork:
         """The same network in all free-free modes of its components (no truncation)."""
@@ -66,10 +70,22 @@ class Network:
 def assemble(system: System) -> Network:
     """Assemble the components and express every port, load and output on their coordinates."""
     ports = Ports(system)
-    joints = tuple(joint_rows(ports, name, joint) for name, joint in system.joints.items())
+    joints = tuple(joint_rows(ports, name, joint) for name, joint in system.joints.items() if joint.kind != RIGID)
     excitation, loads = load_columns(ports, system)
     outputs = output_rows(ports, system, joints)
-    return Network(system, ports.structures, ports.bases, ports.blocks, joints, loads, outputs, excitation)
+    rigid = rigid_rows(ports, system)
+    return Network(system, ports.structures, ports.bases, ports.blocks, joints, loads, outputs, excitation, rigid)
+
+
+def _shares(network: Network, slices: Mapping[str, slice]) -> dict[str, Real]:
+    """What the modes of components with ratios of their own take of the mean ratio."""
+    size = max((block.stop for block in slices.values()), default=0)
+    shares = {}
+    for name, structure in network.structures.items():
+        if structure.damping_ratios is not None and structure.modal_damping > 0.0:
+            shares[name] = np.zeros(size)
+            shares[name][slices[name]] = structure.damping_ratios / structure.modal_damping
+    return shares
 
 
 def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
@@ -89,7 +105,7 @@ def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
         d = None if item.mesh_displacement is None else project(item.mesh_displacement)
         return replace(item, column=item.column @ shapes, mesh_displacement=d)
 
-    return ModalNetwork(
+    modal = ModalNetwork(
         name=network.system.name,
         components=slices,
         modal_damping={
@@ -108,7 +124,10 @@ def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
         excitation=network.excitation,
         paths=network.paths,
         loss_factors={name: s.loss_factor for name, s in network.structures.items() if s.loss_factor},
+        damping_shares=_shares(network, slices),
+        measured={n: item for n, item in network.system.components.items() if isinstance(item, Measured)},
         band=network.band,
         loss_frequency=network.system.loss_frequency,
         source=network.system.source,
     )
+    return joined(modal, [replace(item, rows=item.rows @ shapes) for item in network.rigid])

@@ -7,6 +7,7 @@ import numpy as np
 from ..components import DOFS
 from ..components.dofs import force_unit, motion_unit, rigid_motion
 from ..joints import Joint
+from ..numerics.arrays import Real
 from .ports import Ports, port_place
 from .records import JointRows, Load, Output
 from .system import MeshExcitation, System
@@ -15,14 +16,19 @@ POINT_LOAD = "excitation.force"  # the input that a point excitation adds
 _ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
 
 
-def joint_rows(ports: Ports, name: str, joint: Joint) -> JointRows:
-    picked = [DOFS.index(dof) for dof in joint.dofs]
+def joint_motion(ports: Ports, joint: Joint) -> tuple[Real, Real]:
+    """Motion of the source's end, carried to the receiver's, and of the receiver's, (6, n) each."""
     # a joint holds the shaft at a disk's station, not the disk that spins freely about it
     active = np.array([dof in ports.system.dofs for dof in DOFS])[:, None]
     source, receiver = (active * ports.motion(port, port_place(ports.system, joint, port)) for port in joint.between)
     if joint.offset is not None:
         source = rigid_motion(np.array(joint.offset)) @ source
-    source, receiver = source[picked], receiver[picked]
+    return source, receiver
+
+
+def joint_rows(ports: Ports, name: str, joint: Joint) -> JointRows:
+    picked = [DOFS.index(dof) for dof in joint.dofs]
+    source, receiver = (motion[picked] for motion in joint_motion(ports, joint))
     return JointRows(
         name,
         joint.kind,

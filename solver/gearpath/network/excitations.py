@@ -3,6 +3,7 @@
     Q_e  = 1/4 (R + R^H),  R = V^H D + (i w P d)^H G         input power of all excitations
     Q_p  = 1/4 (v_p^H g_p + g_p^H v_p)                       power through path p into the receiver
     Q_d  = 1/2 V^H X V  or  1/2 dv^H C dv                    power lost in a component or joint
+    Q_d  = 1/4 (f^H V + V^H f)                               in a measured component, f the forces on it
 
 F are the n_e excitations; V, G, dv and v_p, g_p are the responses to unit ones. For correlated random excitations
 with the cross-spectral matrix S = E[F F^H] the expected power is E[P] = tr(Q S). Summed over all paths Q_p is
@@ -17,6 +18,7 @@ import numpy as np
 from ..errors import InputError
 from ..numerics.arrays import Complex, Real
 from ..numerics.lines import chunks, real_times_complex
+from .measured import port_forces
 from .modal import ModalNetwork
 from .power import element_damping, path_rows
 from .records import Load
@@ -51,7 +53,7 @@ def power_matrices(
         force, velocity = solved.force[rows.interface], real_times_complex(rows.receiver, solved.velocity)
         product = np.einsum("pjf,pkf->pfjk", velocity.conj(), force)
         Q_p[:, part] = (product + product.conj().swapaxes(-1, -2)) / 4.0
-        Q_d[:, part] = _dissipated(network, solved, w)
+        Q_d[:, part] = _dissipated(network, loads, solved, w)
         progress(len(w))
     return PowerMatrices(tuple(loads), rows.names, rows.elements, Q_e, Q_p, Q_d)
 
@@ -73,12 +75,16 @@ def _input(network: ModalNetwork, loads: Sequence[Load], solved: Response, w: Re
     return np.asarray((R + R.conj().swapaxes(-1, -2)) / 4.0)
 
 
-def _dissipated(network: ModalNetwork, solved: Response, w: Real) -> Complex:
+def _dissipated(network: ModalNetwork, loads: Sequence[Load], solved: Response, w: Real) -> Complex:
     """Q_d (e, F, n, n)."""
     damping, joints = element_damping(network, w)
     out = []
-    for modes in network.components.values():
+    for name, modes in network.components.items():
         V = solved.elastic[modes]
+        if name in network.measured:  # 1/2 Re(f^H v) of the forces on its channels
+            product = np.einsum("rjf,rkf->fjk", port_forces(network, loads, solved.force, modes).conj(), V)
+            out.append((product + product.conj().swapaxes(-1, -2)) / 2.0)
+            continue
         out.append(np.einsum("rjf,rf,rkf->fjk", V.conj(), damping[modes], V, optimize=True))
     slip = real_times_complex(network.relative, solved.velocity)
     for at, (C, K_lost) in zip(network.joint_slices().values(), joints):

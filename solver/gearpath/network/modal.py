@@ -5,7 +5,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..components import Measured
 from ..numerics.arrays import Real
+from .measured import fitted
 from .records import JointRows, Load, MeshSource, Output, Schedule
 
 
@@ -26,6 +28,7 @@ class ModalNetwork:
     excitation: str  # the load that power ratios and frf outputs refer to
     paths: tuple[str, ...]  # joints that count as power flow paths (Network.paths)
     loss_factors: Mapping[str, float] = field(default_factory=dict)  # component -> eta, where it is not 0
+    measured: Mapping[str, Measured] = field(default_factory=dict)  # component -> its mobilities; modes: its channels
     band: float = np.inf  # Hz, up to where components that were reduced to their band are exact
     loss_frequency: float = 1000.0  # Hz, where loss factors of joints and their viscous equivalents agree
     source: MeshSource | None = None  # of FMUs only: everything else takes the excitation as an input
@@ -56,7 +59,7 @@ class ModalNetwork:
 
     @property
     def hysteresis(self) -> Real:
-        """eta L of every mode, L sum_c eta_c rho_c, (N,), (rad/s)^2: what the loss factors add as its imaginary part."""
+        """eta L of every mode, L sum_c eta_c rho_c, (N,), (rad/s)^2: what loss factors add, imaginary."""
         return self._shared(self.loss_factors) * self.eigenvalues
 
     @property
@@ -67,9 +70,12 @@ class ModalNetwork:
     def viscous(self) -> "ModalNetwork":
         """The network with viscous damping in place of loss factors: what can be simulated in time.
 
+        A measured component becomes the modes of its fit.
         A mode gets zeta = eta / 2, which dissipates alike at its own frequency; a joint C + eta K / w, alike at
         `loss_frequency`.
         """
+        if self.measured:
+            return fitted(self).viscous()
         if not self.has_loss_factors:
             return self
         w = 2.0 * np.pi * self.loss_frequency

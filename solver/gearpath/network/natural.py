@@ -4,11 +4,16 @@ import numpy as np
 import scipy.linalg
 
 from ..numerics.arrays import Real
+from .measured import fitted
 from .modal import ModalNetwork
 
 
 def natural_frequencies(network: ModalNetwork) -> Real:
-    """Square roots of the eigenvalues of L + P^T K P, Hz, ascending; rigid-body modes come out as 0."""
+    """Square roots of the eigenvalues of L + P^T K P, Hz, ascending; rigid-body modes come out as 0.
+
+    Measured components take part with the modes of their fit.
+    """
+    network = fitted(network)
     K, _ = network.interface_matrices()
     P = network.relative
     values = scipy.linalg.eigvalsh(np.diag(network.eigenvalues) + P.T @ K @ P)

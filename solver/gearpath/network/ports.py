@@ -7,7 +7,19 @@ from functools import lru_cache
 import numpy as np
 from scipy.sparse import issparse
 
-from ..components import Frame, GearTrain, Modes, Plate, RigidBody, ShaftPoint, Structure, modes
+from ..components import (
+    Frame,
+    GearTrain,
+    Matrices,
+    Measured,
+    ModalModel,
+    Modes,
+    Plate,
+    RigidBody,
+    ShaftPoint,
+    Structure,
+    modes,
+)
 from ..joints import Joint, Port
 from ..numerics.arrays import Real
 from .basis import basis_of
@@ -31,7 +43,12 @@ def solve_component(
     the given number of interior `vectors`.
     """
     structure = component.structure(dofs, dict(ports), dict(probes))  # type: ignore[arg-type]
-    basis = basis_of(structure, band, vectors) if issparse(structure.mass) else modes(structure)
+    if isinstance(component, ModalModel):
+        basis = component.modes()
+    elif isinstance(component, Measured):  # its channels stay its coordinates
+        basis = Modes(np.zeros(component.channels), np.eye(component.channels))
+    else:
+        basis = basis_of(structure, band, vectors) if issparse(structure.mass) else modes(structure)
     for array in (structure.mass, structure.stiffness, structure.rigid_modes, basis.eigenvalues, basis.shapes):
         if isinstance(array, np.ndarray):
             array.flags.writeable = False  # shared between all networks that hold this component
@@ -118,7 +135,7 @@ def _own_place(system: System, port: Port) -> Vector | None:
     if isinstance(component, GearTrain):
         point = shaft_point(component, port)
         return component.shafts[point.shaft].position(point.z)
-    if isinstance(component, (Plate, Frame)) and port.place is not None:
+    if isinstance(component, (Plate, Frame, Matrices, ModalModel, Measured)) and port.place is not None:
         return component.position(port.place)
     return None
 

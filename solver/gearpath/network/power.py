@@ -8,8 +8,10 @@ import numpy as np
 from ..components.dofs import is_rotation
 from ..numerics.arrays import Complex, Real
 from ..numerics.lines import chunks, real_times_complex
+from .measured import port_forces
 from .modal import ModalNetwork
-from .synthesis import Synthesis, load_power
+from .records import Load
+from .synthesis import Response, Synthesis, load_power
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,7 @@ def power_flow(
     for part in chunks(lines, synthesis.bytes_per_line):
         w = omega[part]
         solved = synthesis.solve(w)
-        g, elastic, velocity = solved.force[:, 0], solved.elastic[:, 0], solved.velocity[:, 0]
+        g, velocity = solved.force[:, 0], solved.velocity[:, 0]
         flow.input_power[part] = amplitude**2 * load_power(network, load, solved, 0, w)
         flow.force[:, part] = amplitude * g[rows.interface]
         v, slip = real_times_complex(rows.receiver, velocity), real_times_complex(synthesis.P, velocity)
@@ -103,18 +105,23 @@ def power_flow(
         flow.velocity_source[:, part] = amplitude * (v + slip[rows.interface])
         v, F = flow.velocity_receiver[:, part], flow.force[:, part]
         flow.path_power[:, part] = 0.5 * (v.real * F.real + v.imag * F.imag)
-        flow.dissipated_power[:, part] = amplitude**2 * _dissipation(network, elastic, slip, w)
+        flow.dissipated_power[:, part] = amplitude**2 * _dissipation(network, load, solved, slip, w)
         progress(len(w))
     return flow
 
 
-def _dissipation(network: ModalNetwork, elastic: Complex, slip: Complex, omega: Real) -> Real:
+def _dissipation(network: ModalNetwork, load: Load, solved: Response, slip: Complex, omega: Real) -> Real:
     """Power lost in every element, (e, F): 1/2 q'^H X q' of components, 1/2 dv^H C dv of joints.
 
     `slip` is the relative velocity dv of all joints, stacked. Loss factors add eta L / w to X and eta K / w to C.
+    A measured component takes 1/2 Re(f^H v) of the forces f on its channels.
     """
     damping, joints = element_damping(network, omega)
+    elastic = solved.elastic[:, 0]
     lost = 0.5 * damping * (elastic.real**2 + elastic.imag**2)
+    for name in network.measured:
+        block = network.components[name]
+        lost[block] = 0.5 * (port_forces(network, [load], solved.force, block)[:, 0].conj() * elastic[block]).real
     rows = [lost[modes].sum(axis=0) for modes in network.components.values()]
     for at, (C, K_lost) in zip(network.joint_slices().values(), joints):
         drag = real_times_complex(C, slip[at])

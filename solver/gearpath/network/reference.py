@@ -22,11 +22,12 @@ import scipy.sparse
 import scipy.sparse.linalg
 from numpy.typing import NDArray
 
-from ..components import Structure
-from ..components.mobility import damping_matrix, modal_damping_matrix
+from ..components import Measured, Structure
+from ..errors import AccuracyError
 from ..numerics.arrays import Complex, Real
 from .assemble import Network
 from .power import ratio
+from .reference_parts import Part, load_of, reference_parts
 
 Extended = NDArray[np.longdouble]
 ExtendedComplex = NDArray[np.clongdouble]
@@ -47,25 +48,29 @@ class Reference:
 def reference_solution(network: Network, omega: Real) -> Reference:
     """Solve the assembled machine at each angular frequency (rad/s), one pivoted factorisation a line.
 
-    Raises AccuracyError where a plate or frame has modal damping, which has no matrix.
+    Raises AccuracyError where damping has no matrix, as modal damping of a plate or frame (`reference_parts`), and for
+    measured components.
     """
-    parts = list(network.structures.values())
-    sparse = any(scipy.sparse.issparse(s.mass) for s in parts)
+    if any(isinstance(item, Measured) for item in network.system.components.values()):
+        raise AccuracyError("a measured component has no matrices; give the modes of its fit (fitted_system)")
+    parts = reference_parts(network)
+    motion = scipy.sparse.hstack([part.motion for part in parts], format="csc")
+    sparse = any(scipy.sparse.issparse(part.structure.mass) for part in parts)
     M, K, H, C = (_sparse_blocks if sparse else _extended_blocks)(parts)
     losses = np.concatenate([np.full(len(joint.dofs), joint.loss_factor) for joint in network.joints])
     source, receiver = (
-        np.vstack([getattr(joint, side) for joint in network.joints]) for side in ("source", "receiver")
+        np.vstack([getattr(joint, side) for joint in network.joints]) @ motion for side in ("source", "receiver")
     )
     B = source - receiver
     K_p, C_p = (
         scipy.linalg.block_diag(*(getattr(joint, name) for joint in network.joints))
         for name in ("stiffness", "damping")
     )
-    load = next(item for item in network.loads if item.name == network.excitation)
+    load = load_of(network, parts, next(item for item in network.loads if item.name == network.excitation))
     n_p, n = B.shape
     # the unknown forces are counted in units of a joint's stiffness times a unit motion: keeps the pivots sensible
     unit = max(float(abs(K_p).max()), 1.0)
-    force, velocity = np.empty((n_p, len(omega)), complex), np.empty((n, len(omega)), complex)
+    force, velocity = np.empty((n_p, len(omega)), complex), np.empty((motion.shape[0], len(omega)), complex)
     input_power, path_power = np.empty(len(omega)), np.empty((n_p, len(omega)))
     for k, w in enumerate(omega):
         Z = ((1.0 + 1j * losses[:, None]) * K_p + 1j * w * C_p) / unit
@@ -83,7 +88,7 @@ def reference_solution(network: Network, omega: Real) -> Reference:
             own = 1j * w * load.mesh_displacement
             v = v + own
             input_power[k] += 0.5 * np.real(np.vdot(B @ own, g))
-        force[:, k], velocity[:, k], path_power[:, k] = g, v, 0.5 * np.real(np.conj(receiver @ v) * g)
+        force[:, k], velocity[:, k], path_power[:, k] = g, motion @ v.astype(complex), 0.5 * np.real(np.conj(receiver @ v) * g)
     carried = [joint.name in network.paths for joint in network.joints for _ in joint.dofs]
     return Reference(force, velocity, input_power, path_power, ratio(path_power[carried].sum(axis=0), input_power))
 
@@ -115,21 +120,19 @@ def _solve_sparse(dynamic: Any, right: Real, lower: Complex, b: Complex) -> Comp
     return np.asarray(x)
 
 
-def _sparse_blocks(parts: Sequence[Structure]) -> tuple[Any, Any, Any, Any]:
+def _sparse_blocks(parts: Sequence[Part]) -> tuple[Any, Any, Any, Any]:
     """Block-diagonal M, K, eta K and C."""
-    matrices = [(s.mass, s.stiffness, s.loss_factor * s.stiffness, damping_matrix(s)) for s in parts]
+    matrices = [(p.structure.mass, p.structure.stiffness, p.hysteresis, p.damping) for p in parts]
     return tuple(scipy.sparse.block_diag(blocks, format="csc") for blocks in zip(*matrices))
 
 
-def _extended_blocks(parts: Sequence[Structure]) -> tuple[Extended, Extended, Extended, Extended]:
-    """Block-diagonal M, K, eta K and C in extended precision, K and C exactly free of rigid-body motion."""
-    stiff = [_exactly_free(s, np.asarray(s.stiffness)) for s in parts]
-    damped = [_exactly_free(s, modal_damping_matrix(s)) for s in parts]
+def _extended_blocks(parts: Sequence[Part]) -> tuple[Extended, Extended, Extended, Extended]:
+    """Block-diagonal M, K, eta K and C in extended precision, all but M exactly free of rigid-body motion."""
     return (
-        _block_diagonal([np.asarray(s.mass).astype(np.longdouble) for s in parts]),
-        _block_diagonal(stiff),
-        _block_diagonal([s.loss_factor * K for s, K in zip(parts, stiff)]),
-        _block_diagonal(damped),
+        _block_diagonal([np.asarray(p.structure.mass).astype(np.longdouble) for p in parts]),
+        _block_diagonal([_exactly_free(p.structure, np.asarray(p.structure.stiffness)) for p in parts]),
+        _block_diagonal([_exactly_free(p.structure, p.hysteresis) for p in parts]),
+        _block_diagonal([_exactly_free(p.structure, p.damping) for p in parts]),
     )
 
 

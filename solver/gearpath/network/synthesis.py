@@ -4,7 +4,8 @@
     v = Y (f_e - B^T g)                                                            (Eq. 4)
 
 Y is never stored: the component mobilities are modal (Eq. 11), so W is one real product of the packed residues
-P_pr P_qr with the modal responses of the chunk.
+P_pr P_qr with the modal responses of the chunk. A measured component's coordinates are its channels, and its Y is
+that of its table.
 
 At the free-free resonance of an undamped component Y is infinite although the coupled answer is not. Lines that close
 to one (`_RESONANT`) are solved in modal coordinates without eliminating the components:
@@ -24,6 +25,7 @@ from ..components.mobility import modal_response
 from ..errors import AccuracyError
 from ..numerics.arrays import Complex, Real
 from ..numerics.lines import real_times_complex, solve_lines
+from .measured import MeasuredRows, velocities
 from .modal import ModalNetwork
 from .records import Load
 
@@ -65,7 +67,9 @@ class Synthesis:
     def __init__(self, network: ModalNetwork, loads: Sequence[Load]) -> None:
         self.network, self.loads = network, tuple(loads)
         self.P = network.relative
-        self._residues = [_Residues.of(self.P, block) for block in network.components.values()]
+        blocks = network.components
+        self._residues = [_Residues.of(self.P, blocks[name]) for name in blocks if name not in network.measured]
+        self._measured = [MeasuredRows.of(self.P, blocks[name], item) for name, item in network.measured.items()]
         K, C = network.interface_matrices()
         self._joints = np.vstack([C, K])
         self._idle = ~(C.any(axis=1) | K.any(axis=1))  # a free direction carries nothing, whatever pivoting leaves
@@ -76,7 +80,8 @@ class Synthesis:
     def bytes_per_line(self) -> int:
         """Working set of one frequency line."""
         n_p, N = self.P.shape
-        return int(16 * (N * (1 + 3 * len(self.loads)) + 5 * n_p**2 + 4 * n_p * len(self.loads)))
+        tables = 3 * sum(part.component.channels**2 for part in self._measured)
+        return int(16 * (N * (1 + 3 * len(self.loads)) + 5 * n_p**2 + 4 * n_p * len(self.loads) + tables))
 
     def solve(self, omega: Real) -> Response:
         """Coupled response at the angular frequencies `omega` (rad/s, all positive).
@@ -89,44 +94,62 @@ class Synthesis:
         # |i w / (w_r^2 - w^2 + i w X_r)| = 1 / (w * relative distance); NaN where both parts are 0
         resonant = np.flatnonzero(~(abs(response) * (omega * _RESONANT) < 1.0).all(axis=0))
         response[:, resonant] = 0.0  # replaced below
-        free, own = self._free_motion(response, omega)
-        W = self._interface_mobility(response)
+        tables = [part.component.at(omega) for part in self._measured]
+        for part in self._measured:
+            response[part.block] = 0.0
+        free, own = self._free_motion(response, tables, omega)
+        W = self._interface_mobility(response, tables)
         A = self._joint_force(W, omega)
         diagonal = np.arange(len(P))
         A[diagonal, diagonal] += 1.0
         relative = real_times_complex(P, free if own is None else free + own)
         g = solve_lines(A, self._joint_force(relative, omega))
         g[self._idle] = 0.0
-        elastic = free - response[:, None] * real_times_complex(P.T, g)
+        pull = real_times_complex(P.T, g)
+        elastic = free - response[:, None] * pull
+        for part, Y in zip(self._measured, tables):
+            elastic[part.block] -= velocities(Y, pull[part.block])
         for line in resonant:
-            self._solve_coupled(float(omega[line]), g[:, :, line], elastic[:, :, line])
+            own_tables = [Y[:, :, line] for Y in tables]
+            self._solve_coupled(float(omega[line]), own_tables, g[:, :, line], elastic[:, :, line])
         finite = np.isfinite(elastic).all(axis=(0, 1)) & np.isfinite(g).all(axis=(0, 1))
         if not finite.all():
             raise _not_finite(float(omega[np.argmin(finite)]))
         return Response(g, elastic, elastic if own is None else elastic + own)
 
-    def _solve_coupled(self, w: float, force: Complex, elastic: Complex) -> None:
-        """Solve one line in modal coordinates; writes `force` (n_p, m) and `elastic` (N, m)."""
+    def _solve_coupled(self, w: float, tables: Sequence[Complex], force: Complex, elastic: Complex) -> None:
+        """Solve one line in modal coordinates; writes `force` (n_p, m) and `elastic` (N, m).
+
+        Rows of a measured component are multiplied by Y / (i w), for its Y may be singular.
+        """
         network, P = self.network, self.P
         C, K = np.split(self._joints, 2)
         Z = (1.0 + 1j * self._losses[:, None]) * K + 1j * w * C
-        dynamic = np.diag(self._stiffness - w**2 + 1j * w * network.damping) + P.T @ (Z @ P)
+        own = np.diag(self._stiffness - w**2 + 1j * w * network.damping)
+        between = P.T @ (Z @ P)
         held = np.column_stack(  # d of each load; 0 for a force
-            [np.zeros(len(dynamic)) if x.mesh_displacement is None else x.mesh_displacement for x in self.loads]
+            [np.zeros(len(own)) if x.mesh_displacement is None else x.mesh_displacement for x in self.loads]
         )
         push = np.column_stack([x.column * (w**2 if x.is_transmission_error else 1.0) for x in self.loads])
+        right = push - P.T @ (Z @ (P @ held))
+        for part, Y in zip(self._measured, tables):
+            own[part.block, part.block] = np.eye(len(Y))
+            between[part.block] = Y / (1j * w) @ between[part.block]
+            right[part.block] = Y / (1j * w) @ right[part.block]
         try:
-            q = np.linalg.solve(dynamic, push - P.T @ (Z @ (P @ held)))
+            q = np.linalg.solve(own + between, right)
         except np.linalg.LinAlgError as error:
             raise _not_finite(w) from error
         force[:], elastic[:] = Z @ (P @ (q + held)), 1j * w * q
 
-    def _interface_mobility(self, response: Complex) -> Complex:
+    def _interface_mobility(self, response: Complex, tables: Sequence[Complex]) -> Complex:
         """W = B Y B^T (n_p, n_p, F), summed over the components."""
         W = np.zeros((len(self.P), len(self.P), response.shape[1]), complex)
         for part in self._residues:
             packed = real_times_complex(part.products, response[part.modes])
             W[np.ix_(part.rows, part.rows)] += packed[part.unpack]
+        for known, Y in zip(self._measured, tables):
+            W[np.ix_(known.rows, known.rows)] += known.interface(Y)
         return W
 
     def _joint_force(self, motion: Complex, omega: Real) -> Complex:
@@ -137,13 +160,17 @@ class Synthesis:
         viscous += elastic
         return viscous
 
-    def _free_motion(self, response: Complex, omega: Real) -> tuple[Complex, Complex | None]:
+    def _free_motion(
+        self, response: Complex, tables: Sequence[Complex], omega: Real
+    ) -> tuple[Complex, Complex | None]:
         """Modal velocities of the uncoupled components under each load; and i w d e of transmission errors."""
         free = np.empty((len(response), len(self.loads), len(omega)), complex)
         own = None
         for k, load in enumerate(self.loads):
             if load.mesh_displacement is None:
                 free[:, k] = response * load.column[:, None]
+                for part, Y in zip(self._measured, tables):
+                    free[part.block, k] = np.einsum("abf,b->af", Y, load.column[part.block])
                 continue
             free[:, k] = response * (load.column[:, None] * omega**2)
             own = np.zeros_like(free) if own is None else own

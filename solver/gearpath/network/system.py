@@ -8,13 +8,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from ..components import Frame, GearTrain, Plate, RigidBody
+from ..components import Frame, GearTrain, Matrices, Measured, ModalModel, Plate, RigidBody
 from ..joints import Joint, Port
 from .records import MeshSource as MeshSource
 from .records import Tone as Tone  # named here because the repr of a system names it
 
 Vector = tuple[float, float, float]
-Component = GearTrain | RigidBody | Plate | Frame
+Component = GearTrain | RigidBody | Plate | Frame | Matrices | ModalModel | Measured
 
 
 @dataclass(frozen=True)

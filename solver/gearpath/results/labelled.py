@@ -22,7 +22,8 @@ def checked_frequencies(
 ) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     """Frequencies (Hz) as a one-dimensional array.
 
-    Raises InputError unless all are finite and positive, and not above the band that the network was reduced for.
+    Raises InputError unless all are finite and positive, not above the band that the network was reduced for, and
+    within that of every measured component.
     """
     try:
         f = np.atleast_1d(np.asarray(frequencies_hz, dtype=float))
@@ -38,6 +39,13 @@ def checked_frequencies(
             f"frequencies: {f.max():g} Hz is above {network.band:g} Hz, up to which plates and frames of this model "
             "were reduced; raise frequency.stop of the model"
         )
+    for name, component in network.measured.items():
+        low, high = component.band
+        off = f[(f < low * (1.0 - 1e-9)) | (f > high * (1.0 + 1e-9))]
+        if off.size:
+            raise InputError(
+                f"frequencies: {off[0]:g} Hz is outside {low:g} to {high:g} Hz, where {name} was measured; stay within"
+            )
     return f
 
 

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ...components import Measured
 from ...errors import GearpathError, InputError, MissingExtraError
+from ...network.measured import fit_of
 from ...network.modal import ModalNetwork
 from ...network.natural import natural_frequencies
 from ...network.records import Load, Schedule
@@ -91,7 +93,9 @@ def validate(
         if conforms and not _is_refusal(error):
             raise
         checks.append(Check("running the FMU", np.nan, 0.0, f"stopped: {type(error).__name__}: {error}"))
-    return ValidationReport(path, network.name, kind, tuple(checks), tuple(comparisons), findings=findings)
+    # an FMU is that of the fit of what was measured: how good that is stands beside the checks
+    notes = {name: str(fit_of(item)) for name, item in system.components.items() if isinstance(item, Measured)}
+    return ValidationReport(path, network.name, kind, tuple(checks), tuple(comparisons), notes, findings=findings)
 
 
 def _is_refusal(error: Exception) -> bool:

@@ -3,6 +3,8 @@
 import numpy as np
 
 from ...errors import ModelError
+from ..foreign_tables import MatricesTable, ModalTable
+from ..measured_tables import MeasuredTable
 from ..references import SAME, find, length
 from ..structure_tables import FrameTable, PlateTable
 from ..tables import FileTable, InertiaTable, RigidBodyTable
@@ -20,6 +22,8 @@ def check_components(file: FileTable) -> None:
         raise ModelError("components", "there is no component", "give at least one, such as a gear_train")
     for name, component in file.components.items():
         key = f"components.{name}"
+        if isinstance(component, (MatricesTable, ModalTable, MeasuredTable)):  # see checks.foreign, checks.measured
+            continue
         if isinstance(component, RigidBodyTable):
             _check_inertia(component.inertia, f"{key}.inertia")
             continue

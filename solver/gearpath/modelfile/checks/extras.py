@@ -4,9 +4,12 @@ from ...errors import ModelError
 from ...joints import Port
 from ...joints.joint import Vector
 from ..build_structures import build_plate
+from ..foreign_tables import MatricesTable, ModalTable
 from ..hints import hint
+from ..measured_tables import MeasuredTable
 from ..references import find, find_mesh, find_port
 from ..structure_tables import FrameTable, PlateTable
+from ..supplied import supplied_dofs
 from ..tables import ActuatorTable, ExcitationTable, FileTable
 from ..train_tables import GearTrainTable
 from ..wording import show
@@ -76,6 +79,9 @@ def _check_active(file: FileTable, dof: str, key: str, port: Port | None = None)
             return
     if dof not in file.dofs:
         raise ModelError(key, f"{show(dof)} is not among the active dofs", hint("", file.dofs))
+    supplied = file.dofs if port is None else supplied_dofs(file, port)
+    if dof not in supplied:
+        raise ModelError(key, f"{show(dof)} is not among the channels of the port", hint("", supplied))
 
 
 def check_actuators(file: FileTable) -> None:
@@ -114,6 +120,12 @@ def _check_item(file: FileTable, table: ActuatorTable, key: str) -> GearTrainTab
     find("component", table.component, file.components, f"{key}.component")
     component = file.components[table.component]
     train = component if isinstance(component, GearTrainTable) else None
+    if isinstance(component, (MatricesTable, ModalTable, MeasuredTable)):
+        if not isinstance(table.point, str):
+            raise ModelError(f"{key}.point", "is not the name of a port", hint("", component.ports))
+        port = find_port(file, f"{table.component}.{table.point}", f"{key}.point")
+        _check_active(file, table.dof, f"{key}.dof", port)
+        return None
     if isinstance(component, (PlateTable, FrameTable)):
         _check_structure_point(file, component, table, key)
         _check_active(file, table.dof, f"{key}.dof")

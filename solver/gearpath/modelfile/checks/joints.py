@@ -7,9 +7,11 @@ from ...errors import ModelError
 from ...joints import Port
 from ..build_bearings import catalogue_of
 from ..build_structures import build_plate
-from ..joint_tables import BeamJointTable, BearingTable, JointTable, MatrixJointTable
-from ..references import beam_offset, find, find_port, place_of
+from ..hints import hint
+from ..joint_tables import BeamJointTable, BearingTable, JointTable, MatrixJointTable, RigidJointTable
+from ..references import PORTED, beam_offset, find, find_port, place_of
 from ..structure_tables import PlateTable
+from ..supplied import shared_dofs
 from ..tables import FileTable
 from ..wording import show
 from .bearings import check_bearing
@@ -29,10 +31,14 @@ def check_joints(file: FileTable, folder: Path) -> None:
         ends = tuple(find_port(file, text, f"{key}.between") for text in joint.between)
         _check_ends(joint, ends, f"{key}.between")
         _check_place(file, joint, ends, key)
+        _check_supplied(file, joint, (ends[0], ends[1]), key)
         if isinstance(joint, BeamJointTable):
             _check_beam(file, joint, ends, key)
         else:
             _check_meeting(file, joint, ends, key)
+            if isinstance(joint, RigidJointTable):
+                _check_rigid(file, joint, ends, key)
+                continue
             if isinstance(joint, BearingTable):
                 check_bearing(file, joint, key, catalogue_file)
             _check_impedance(file, joint, key)
@@ -40,15 +46,18 @@ def check_joints(file: FileTable, folder: Path) -> None:
 
 def _check_ends(joint: JointTable, ends: tuple[Port, ...], key: str) -> None:
     if ends[0].is_ground:
-        raise ModelError(
-            key, f"{show(list(joint.between))} begins with ground", "put ground second, as the receiver"
-        )
+        raise ModelError(key, f"{show(list(joint.between))} begins with ground", "put ground second, as the receiver")
     if ends[0].component == ends[1].component:
         raise ModelError(
             key,
             f"{show(list(joint.between))} are both on {ends[0].component}",
             "connect two components, or one to ground",
         )
+
+
+def _is_named(file: FileTable, port: Port) -> bool:
+    """Whether a port moves as it does wherever it is: the ground, and named ports of components from elsewhere."""
+    return port.is_ground or isinstance(file.components[port.component], PORTED)
 
 
 def _check_place(file: FileTable, joint: JointTable, ends: tuple[Port, ...], key: str) -> None:
@@ -60,7 +69,7 @@ def _check_place(file: FileTable, joint: JointTable, ends: tuple[Port, ...], key
             f"{show(list(joint.at))} is given beside {what}, which is the place of the joint",
             "leave at out",
         )
-    if not placed and joint.at is None:
+    if not placed and joint.at is None and not all(_is_named(file, port) for port in ends):
         raise ModelError(f"{key}.at", "is missing", "give the place of the joint as [x, y, z] in m")
     for port in ends:
         table = None if port.is_ground else file.components[port.component]
@@ -69,16 +78,32 @@ def _check_place(file: FileTable, joint: JointTable, ends: tuple[Port, ...], key
             as_model_error(lambda plate=plate, at=at: plate.mesh([at]), f"{key}.at")  # type: ignore[misc]
 
 
+def _check_supplied(file: FileTable, joint: JointTable, ends: tuple[Port, Port], key: str) -> None:
+    """Refuse a joint whose ends share no degree of freedom, or not those that it needs."""
+    shared = shared_dofs(file, ends)
+    scalar = isinstance(joint, MatrixJointTable) and isinstance(joint.stiffness, float)
+    needed = ("uy",) if scalar and "uy" in file.dofs else file.dofs if isinstance(joint, BeamJointTable) else shared[:1]
+    lacking = [dof for dof in needed if dof not in shared]
+    if lacking or not shared:
+        what = lacking[0] if lacking else "any of the active dofs"
+        raise ModelError(
+            f"{key}.between",
+            f"the ends {show(list(joint.between))} do not both have {what}, which the joint needs",
+            "connect other ports, or add the channel to the ports of the component",
+        )
+
+
 def _check_meeting(file: FileTable, joint: JointTable, ends: tuple[Port, ...], key: str) -> None:
     places = [place for port in ends if (place := place_of(file, port)) is not None]
     if len(places) == 2 and dist(*places) > _MEETING:
         shafts = all(port.shaft for port in ends)
+        wanted = "rigid joint" if isinstance(joint, RigidJointTable) else "bearing or mount"
         raise ModelError(
             f"{key}.between",
             f"the {'stations' if shafts else 'ends'} {show(list(joint.between))} are {dist(*places):.3g} m apart",
             "a joint has no length: move an origin so that they meet"
             if shafts
-            else "a bearing or mount has no length: move one so that they meet, or use a beam_joint",
+            else f"a {wanted} has no length: move one so that they meet, or use a beam_joint",
         )
 
 
@@ -115,6 +140,19 @@ def _check_beam(file: FileTable, joint: BeamJointTable, ends: tuple[Port, ...], 
             f"the ends {show(list(joint.between))} are at the same place",
             "a beam joint bridges the way between its ends: move one, or use a bearing or mount",
         )
+
+
+def _check_rigid(file: FileTable, joint: RigidJointTable, ends: tuple[Port, ...], key: str) -> None:
+    for port in ends:
+        if not port.is_ground and file.components[port.component].kind == "measured":
+            raise ModelError(
+                f"{key}.between",
+                f"{show(port.component)} was measured, and its mobilities cannot be held rigidly",
+                "give a stiff mount or bearing instead",
+            )
+    for dof in joint.dofs or ():
+        if dof not in file.dofs:
+            raise ModelError(f"{key}.dofs", f"{show(dof)} is not among the active dofs", hint(dof, file.dofs))
 
 
 def _check_impedance(file: FileTable, joint: MatrixJointTable, key: str) -> None:

@@ -21,9 +21,7 @@ def check_matrix(matrix: Matrix, dofs: tuple[str, ...], key: str) -> None:
     K = np.array(matrix)
     for i, dof in enumerate(dofs):
         if K[i, i] < 0.0:
-            raise ModelError(
-                key, f"entry [{i + 1},{i + 1}], {K[i, i]:g}, on {dof} is negative", "give at least 0"
-            )
+            raise ModelError(key, f"entry [{i + 1},{i + 1}], {K[i, i]:g}, on {dof} is negative", "give at least 0")
     root = np.sqrt(np.diag(K))
     _check_symmetry(K, root, key)
     _check_definite(K, root, dofs, key)

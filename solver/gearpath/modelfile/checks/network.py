@@ -2,6 +2,7 @@
 
 from ...components.shaft_mesh import shaft_stations
 from ...errors import ModelError
+from ...joints import RIGID
 from ..build import build_shaft
 from ..references import find_port, station_of
 from ..tables import FileTable
@@ -22,6 +23,8 @@ def check_network(file: FileTable) -> None:
 def _check_connected(file: FileTable) -> None:
     if not file.joints:
         raise ModelError("joints", "there is no joint", "connect the components with at least one")
+    if all(joint.kind == RIGID for joint in file.joints.values()):
+        raise ModelError("joints", "all of them are rigid, so that none has a force", "add a bearing or a mount")
     links: dict[str, set[str]] = {name: set() for name in file.components}
     used: set[str] = set()
     for name, joint in file.joints.items():
@@ -50,11 +53,13 @@ def _check_connected(file: FileTable) -> None:
 
 def _check_direction(file: FileTable) -> None:
     """Refuse bearings and bolted joints that lead in a circle: which end is the source?"""
-    leads: dict[str, set[str]] = {name: set() for name in file.components}
+    body = _bodies(file)
+    leads: dict[str, set[str]] = {name: set() for name in body.values()}
     for name, joint in file.joints.items():
-        if joint.kind == "mount":
+        ends = [find_port(file, text, f"joints.{name}.between").component for text in joint.between]
+        source, receiver = (body[end] for end in ends)
+        if joint.kind in ("mount", RIGID) or source == receiver:
             continue
-        source, receiver = (find_port(file, text, f"joints.{name}.between").component for text in joint.between)
         reached, waiting = set[str](), [receiver]
         while waiting:
             here = waiting.pop()
@@ -63,10 +68,20 @@ def _check_direction(file: FileTable) -> None:
         if source in reached:
             raise ModelError(
                 f"joints.{name}.between",
-                f"{show(list(joint.between))} leads from {source} to {receiver}, and other joints lead back",
+                f"{show(list(joint.between))} leads from {ends[0]} to {ends[1]}, and other joints lead back",
                 "put the source first in all of them: power counts from the first end to the second",
             )
         leads[source].add(receiver)
+
+
+def _bodies(file: FileTable) -> dict[str, str]:
+    """Component -> one of those that rigid joints hold together with it; the ground by itself."""
+    body = {name: name for name in [*file.components, "ground"]}
+    for joint in file.joints.values():
+        if joint.kind == RIGID and "ground" not in joint.between:
+            first, other = (body[find_port(file, text, "between").component] for text in joint.between)
+            body = {name: first if of == other else of for name, of in body.items()}
+    return body
 
 
 def _check_elements(file: FileTable, train: GearTrainTable, component: str, shaft: str) -> None:
@@ -74,9 +89,7 @@ def _check_elements(file: FileTable, train: GearTrainTable, component: str, shaf
     if not isinstance(counts, tuple):
         return
     ports = [
-        find_port(file, text, f"joints.{name}.between")
-        for name, joint in file.joints.items()
-        for text in joint.between
+        find_port(file, text, f"joints.{name}.between") for name, joint in file.joints.items() for text in joint.between
     ]
     bearings = [
         z

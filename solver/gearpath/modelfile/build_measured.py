@@ -1,0 +1,124 @@
+"""Measured components from their tables: FRFs of a file as mobilities between the freedoms of the ports, SI units."""
+
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from ..components import Measured
+from ..components.dofs import is_rotation
+from ..errors import InputError, ModelError
+from ..fitting import as_mobility
+from ..numerics.arrays import Complex, Real
+from .data.frf import FrfFile
+from .data.frf_csv import read_csv
+from .data.frf_npz import read_npz
+from .data.frf_uff import read_uff
+from .hints import hint
+from .measured_tables import FORCES, MOTIONS, MeasuredTable
+from .wording import show
+
+READERS = {".npz": read_npz, ".csv": read_csv, ".unv": read_uff, ".uff": read_uff, ".uf": read_uff}
+
+
+def build_measured(table: MeasuredTable, folder: Path, key: str) -> Measured:
+    """The component of a table of a model file in `folder`; raises ModelError for data that do not fit it."""
+    file = _read(table, folder, key)
+    quantity = _quantity(table, file, key)
+    places = [(port, dof, item) for port, one in table.ports.items() for dof, item in one.channels.items()]
+    picked = _picked(file, places, key)
+    frf = _reciprocal(file.frf[:, picked][:, :, picked], places, key)
+    omega = 2.0 * np.pi * file.frequencies
+    mobility = as_mobility(omega, frf * _scale(table, file, quantity, [dof for _, dof, _ in places], key), quantity)
+    ports: dict[str, dict[str, int]] = {name: {} for name in table.ports}
+    for k, (port, dof, _) in enumerate(places):
+        ports[port][dof] = k
+    where = {name: port.at for name, port in table.ports.items() if port.at is not None}
+    return Measured(omega, mobility, ports, where, table.tolerance, table.modes)
+
+
+def _read(table: MeasuredTable, folder: Path, key: str) -> FrfFile:
+    path = folder / table.file
+    suffix = path.suffix.lower()
+    if suffix not in READERS:
+        raise ModelError(f"{key}.file", f"{show(table.file)} is no file of FRFs", "give a .unv, .uff, .npz or .csv")
+    if not path.is_file():
+        remedy = "give the path of a file of FRFs, from the folder of the model file"
+        raise ModelError(f"{key}.file", f"{show(table.file)}: there is no such file", remedy)
+    stamp = path.stat()
+    try:
+        return _remembered(suffix, path, stamp.st_mtime_ns, stamp.st_size)
+    except InputError as error:
+        problem, _, remedy = str(error).partition("; ")
+        raise ModelError(f"{key}.file", problem, remedy) from None
+
+
+@lru_cache(maxsize=8)
+def _remembered(suffix: str, path: Path, changed: int, size: int) -> FrfFile:  # noqa: ARG001
+    """The file, read once: a model is changed and checked again many times in a study."""
+    return READERS[suffix](path)
+
+
+def _quantity(table: MeasuredTable, file: FrfFile, key: str) -> str:
+    if table.quantity and file.quantity and table.quantity != file.quantity:
+        raise ModelError(
+            f"{key}.quantity",
+            f"{show(table.quantity)} is given for a file that holds {file.quantity}",
+            "leave quantity out",
+        )
+    if not (table.quantity or file.quantity):
+        raise ModelError(f"{key}.quantity", "is missing, and the file does not say it", 'give "accelerance", ...')
+    return table.quantity or file.quantity
+
+
+def _picked(file: FrfFile, places: list[tuple[str, str, int | str]], key: str) -> list[int]:
+    """Where the channels of the ports' freedoms stand in the file."""
+    picked: list[int] = []
+    for port, dof, item in places:
+        here = f"{key}.ports.{port}.{dof}"
+        if isinstance(item, int) and item >= len(file.channels):
+            raise ModelError(
+                here, f"there is no channel {item} among {len(file.channels)}", f"give 0 to {len(file.channels) - 1}"
+            )
+        if isinstance(item, str) and item not in file.channels:
+            raise ModelError(here, f"there is no channel {show(item)}", hint(item, file.channels))
+        place = item if isinstance(item, int) else file.channels.index(item)
+        if place in picked:
+            port_2, dof_2, _ = places[picked.index(place)]
+            raise ModelError(here, f"{show(item)} is already the channel of {port_2}.{dof_2}", "give another one")
+        picked.append(place)
+    return picked
+
+
+def _reciprocal(frf: Complex, places: list[tuple[str, str, int | str]], key: str) -> Complex:
+    """The FRFs with every missing one taken from its transpose; raises ModelError where both are missing."""
+    given = np.isfinite(frf)
+    frf = np.where(given, frf, frf.swapaxes(1, 2))
+    lacking = np.argwhere(~np.isfinite(frf).all(axis=0))
+    if len(lacking):
+        (port, dof, _), (port_2, dof_2, _) = (places[k] for k in lacking[0])
+        raise ModelError(
+            f"{key}.ports",
+            f"the file has no complete FRF between {port}.{dof} and {port_2}.{dof_2}, either way",
+            "measure it, or leave one of them out",
+        )
+    return np.asarray(frf)
+
+
+def _scale(table: MeasuredTable, file: FrfFile, quantity: str, dofs: list[str], key: str) -> Real:
+    """SI units per unit of the file, (m, m); rotations are in rad, moments in units of force times length."""
+    motion, force, length = file.length, file.force, file.length
+    if isinstance(table.unit_motion, str):
+        if table.unit_motion not in MOTIONS[quantity]:
+            raise ModelError(
+                f"{key}.unit_motion",
+                f"{show(table.unit_motion)} is no unit of {quantity}",
+                hint("", MOTIONS[quantity]),
+            )
+        motion, length = MOTIONS[quantity][table.unit_motion], 1.0
+    elif table.unit_motion is not None:
+        motion, length = table.unit_motion, 1.0
+    if table.unit_force is not None:
+        force = FORCES[table.unit_force] if isinstance(table.unit_force, str) else table.unit_force
+    turns = np.array([is_rotation(dof) for dof in dofs])
+    return np.where(turns, 1.0, motion)[:, None] / np.where(turns, force * length, force)
