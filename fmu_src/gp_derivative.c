@@ -3,13 +3,18 @@
 #include "gp_linalg.h"
 #include "gp_schedule.h"
 
+/* Adds a seed of entry b, c of a joint's matrix, and of the entry mirrored in the diagonal, which is the same. */
+static void add_entry(const GpModel *m, double *packed, const GpVariable *v, double seed) {
+    const GpJoint *joint = m->joint + v->a;
+    packed[joint->block + v->b * joint->size + v->c] += seed;
+    if (v->b != v->c) packed[joint->block + v->c * joint->size + v->b] += seed;
+}
+
 /* Adds `seed` of element i of a variable to the direction. */
 static int add_seed(GpInstance *p, unsigned int reference, size_t i, double seed) {
     const GpModel *m = &p->model;
     GpTangent *t = &p->tangent;
     const GpVariable *v = m->variable + reference;
-    const GpJoint *joint = m->joint + (v->a < m->joints ? v->a : 0);
-    const size_t entry = joint->block + v->b * joint->size + v->c, mirror = joint->block + v->c * joint->size + v->b;
     if (gp_schedule_decides(m, v))
         return gp_refuse(p, reference, " follows the input operation.torque: take the derivative by that.");
     switch (v->kind) {
@@ -21,17 +26,11 @@ static int add_seed(GpInstance *p, unsigned int reference, size_t i, double seed
     case GP_TONE_PHASE: t->phase[v->a] += seed; return 0;
     case GP_STATE: t->states[v->a] += seed; return 0;
     case GP_STATES: t->states[i] += seed; return 0;
-    case GP_STIFFNESS:
-        t->K[entry] += seed;
-        if (mirror != entry) t->K[mirror] += seed;
-        break;
-    case GP_DAMPING:
-        t->C[entry] += seed;
-        if (mirror != entry) t->C[mirror] += seed;
-        break;
+    case GP_STIFFNESS: add_entry(m, t->K, v, seed); break;
+    case GP_DAMPING: add_entry(m, t->C, v, seed); break;
     /* an element of a matrix is moved alone; the mirrored one has a seed of its own */
-    case GP_STIFFNESS_MATRIX: t->K[joint->block + i] += seed; break;
-    case GP_DAMPING_MATRIX: t->C[joint->block + i] += seed; break;
+    case GP_STIFFNESS_MATRIX: t->K[m->joint[v->a].block + i] += seed; break;
+    case GP_DAMPING_MATRIX: t->C[m->joint[v->a].block + i] += seed; break;
     case GP_MODAL_DAMPING: t->zeta[v->a] += seed; break;
     case GP_TORQUE: gp_schedule_tangent(m, p->torque, seed, t->K, t->C); break;
     default: return gp_refuse(p, reference, " is neither an input, a parameter nor a state: no derivative is taken by it.");
@@ -46,7 +45,7 @@ static void follow(GpInstance *p) {
     GpTangent *t = &p->tangent;
     for (size_t k = 0; k < m->loads; k++) t->total[k] = t->input[k];
     if (m->source_load != GP_NONE) {
-        t->total[m->source_load] += gp_source_rate(&p->source, m) * t->states[2 * m->modes];
+        t->total[m->source_load] += gp_source_rate(&p->source, m) * t->states[m->order];
         t->total[m->source_load] += gp_source_tangent(&p->source, m, t->amplitude, t->phase, t->teeth);
     }
     gp_tangent_system(t, m, &p->system);
@@ -86,7 +85,6 @@ static int order_tangent(GpInstance *p, const GpVariable *v, double *change) {
 static int change_of(GpInstance *p, unsigned int reference, const GpVariable *v, int *responded, double *change) {
     const GpModel *m = &p->model;
     const GpTangent *t = &p->tangent;
-    const size_t N = m->modes;
     size_t row;
     if (gp_schedule_decides(m, v)) { /* an entry that follows the torque */
         const GpJoint *joint = m->joint + v->a;
@@ -98,12 +96,10 @@ static int change_of(GpInstance *p, unsigned int reference, const GpVariable *v,
     case GP_PORT_FORCE: *change = t->motion.g[m->joint[v->a].first + v->b]; return 0;
     case GP_PORT_VELOCITY:
         row = m->joint[v->a].first + v->b;
-        *change = gp_dot(m->receiver + row * N, t->motion.v, N);
+        *change = gp_dot(m->receiver + row * m->modes, t->motion.v, m->modes);
         return 0;
     case GP_DERIVATIVE:
-        *change = v->a < N       ? m->scale[v->a] * t->motion.v[v->a]
-                  : v->a < 2 * N ? t->motion.a[v->a - N]
-                                 : GP_RAD_PER_REV_MIN * t->speed;
+        *change = v->a < m->order ? gp_system_rate(m, &t->motion, v->a) : GP_RAD_PER_REV_MIN * t->speed;
         return 0;
     case GP_ENTRY_A:
     case GP_ENTRY_B:

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "gp_clock.h"
+#include "gp_given.h"
 #include "gp_linalg.h"
 #include "gp_memory.h"
 #include "gp_schedule.h"
@@ -87,7 +88,7 @@ void gp_instance_reset(GpInstance *p) {
     memset(p->changed, 0, m->joints);
     memset(p->input, 0, m->loads * sizeof(double));
     memset(p->slope, 0, m->loads * sizeof(double));
-    memset(p->now, 0, 2 * m->modes * sizeof(double));
+    memset(p->now, 0, m->order * sizeof(double));
     for (size_t i = 0; i < m->tones; i++) {
         p->source.amplitude[i] = m->tone[i].amplitude;
         p->source.phase[i] = m->tone[i].phase;
@@ -134,15 +135,15 @@ const GpMotion *gp_motion(GpInstance *p) {
 
 static void to_physical(GpInstance *p) {
     if (!p->modal) return;
-    copy(p->now, gp_states(p), 2 * p->model.modes);
+    copy(p->now, gp_states(p), p->model.order);
     p->modal = 0;
     forget_discrete(p);
 }
 
 static void to_modal(GpInstance *p) {
     gp_modes_from_states(&p->model, &p->system, p->now, p->next, p->work);
-    if (!gp_all_finite(p->next, 2 * p->model.modes)) return; /* stays as it is */
-    copy(p->now, p->next, 2 * p->model.modes);
+    if (!gp_all_finite(p->next, p->model.order)) return; /* stays as it is */
+    copy(p->now, p->next, p->model.order);
     p->modal = 1;
     p->states_ready = 0;
     forget_discrete(p);
@@ -235,13 +236,13 @@ void gp_instance_restored(GpInstance *p, int used) {
 }
 
 int gp_get_states(GpInstance *p, double *states) {
-    copy(states, gp_states(p), 2 * p->model.modes);
-    if (p->model.source_load != GP_NONE) states[2 * p->model.modes] = gp_source_angle(&p->source);
+    copy(states, gp_states(p), p->model.order);
+    if (p->model.source_load != GP_NONE) states[p->model.order] = gp_source_angle(&p->source);
     return 0;
 }
 
 int gp_set_states(GpInstance *p, const double *states) {
-    const size_t n = 2 * p->model.modes;
+    const size_t n = p->model.order;
     if (!gp_all_finite(states, p->model.states)) {
         gp_text_clear(&p->message);
         gp_text_add(&p->message, "A continuous state is not a finite number.");
@@ -258,17 +259,17 @@ int gp_get_derivatives(GpInstance *p, double *derivatives) {
     const GpModel *m = &p->model;
     if (gp_use_parameters(p)) return -1;
     gp_system_derivative(m, gp_motion(p), derivatives);
-    if (m->source_load != GP_NONE) derivatives[2 * m->modes] = GP_RAD_PER_REV_MIN * p->source.speed;
+    if (m->source_load != GP_NONE) derivatives[m->order] = GP_RAD_PER_REV_MIN * p->source.speed;
     if (gp_all_finite(derivatives, m->states)) return 0;
     gp_text_add(&p->message, "A derivative overflows; check the states and inputs.");
     return -1;
 }
 
 void gp_get_nominals(const GpInstance *p, double *nominals) {
-    const size_t N = p->model.modes;
-    copy(nominals, p->model.nominal, N);
-    copy(nominals + N, p->model.nominal, N);
-    if (p->model.source_load != GP_NONE) nominals[2 * N] = 1;
+    const GpModel *m = &p->model;
+    copy(nominals, m->nominal, m->modes); /* of a given system none, and then one of each state */
+    copy(nominals + m->modes, m->nominal, m->order - m->modes);
+    if (m->source_load != GP_NONE) nominals[m->order] = 1;
 }
 
 /* The discretisation for h: a kept one, or a new one in the place of the one not used for longest. */
@@ -305,7 +306,7 @@ static GpDiscrete *discretise(GpInstance *p, double time, double h) {
 /* One part of a step: from the coordinates `from` at the time t after the communication point to `to`. */
 static void propagate(GpInstance *p, const GpDiscrete *d, double t, double h, const double *from, double *to) {
     const GpModel *m = &p->model;
-    const size_t n = 2 * m->modes;
+    const size_t n = m->order;
     int sloping = 0;
     gp_transition(d, p->kernels, p->modal, from, to, n);
     for (size_t k = 0; k < m->loads; k++) {
@@ -318,7 +319,7 @@ static void propagate(GpInstance *p, const GpDiscrete *d, double t, double h, co
 }
 
 static void add_source(GpInstance *p, const GpDiscrete *d, double t, double h, double *to) {
-    const size_t n = 2 * p->model.modes;
+    const size_t n = p->model.order;
     double c[GP_LEGENDRE];
     gp_source_coefficients(&p->source, &p->model, t, h, c);
     for (size_t k = 0; k < GP_LEGENDRE; k++)
@@ -371,8 +372,8 @@ int gp_step(GpInstance *p, double time, double h) {
     if (!d) {
         gp_text_add(&p->message, "The system cannot be discretised for the step size ");
         gp_text_real(&p->message, h);
-        return fail_step(p, " s: stiffness or damping is too large for it, so that no digits would be left; use a smaller "
-                            "step.");
+        gp_text_add(&p->message, gp_is_given(&p->model) ? " s: its matrix A" : " s: stiffness or damping");
+        return fail_step(p, " is too large for it, so that no digits would be left; use a smaller step.");
     }
     from = p->now;
     for (size_t i = 0; i < parts; i++) {
@@ -382,7 +383,7 @@ int gp_step(GpInstance *p, double time, double h) {
         from = to;
     }
     for (size_t k = 0; k < p->model.loads; k++) check += 0 * (p->input[k] + h * p->slope[k]);
-    if (check != 0 || !gp_all_finite(to, 2 * p->model.modes)) /* NaN: some number is not finite */
+    if (check != 0 || !gp_all_finite(to, p->model.order)) /* NaN: some number is not finite */
         return fail_step(p, "The step overflows, so it is not made; check the inputs and their units.");
     commit(p, to, h, frequency);
     return 0;

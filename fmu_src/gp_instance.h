@@ -32,14 +32,14 @@ typedef struct {
     GpSource source;          /* with its parameters, its speed and its angle */
     double time;              /* s, as the importer told it; only for the variable `time` */
     /* state, in the form of gp_propagator.h */
-    double *now, *next, *spare; /* (2N) coordinates, and two places for the next ones */
+    double *now, *next, *spare; /* (order) coordinates, and two places for the next ones */
     int modal;                /* whether they are modal coordinates; else x itself */
     int jumped;               /* whether a change of damping has moved the states; cleared by who asks */
     int begun;                /* whether time has passed, so that velocities must not jump any more */
     /* caches, and whether they belong to the current parameters, inputs and state */
     int system_ready, total_ready, states_ready, motion_ready, response_ready;
     int as_exported;          /* whether all parameters have their start values */
-    double *states;           /* (2N) x, where `now` is modal */
+    double *states;           /* (order) x, where `now` is modal */
     double *held, *grown;     /* (M) inputs at the beginning of a part of a step, and what they grow by */
     double *total;            /* (M) inputs with the source added */
     GpSystem system;
@@ -110,7 +110,7 @@ int gp_use_parameters(GpInstance *p);
 /* Advances the state by h; `time` is the end of the step, for the rounding allowed in h. */
 int gp_step(GpInstance *p, double time, double h);
 
-/* The states (2N, one more with a source: the shaft angle), their derivatives and their nominal values.
+/* The states (order, one more with a source: the shaft angle), their derivatives and their nominal values.
    0, or -1 where a number is not finite. */
 int gp_get_states(GpInstance *p, double *states);
 int gp_set_states(GpInstance *p, const double *states);

@@ -70,7 +70,7 @@ static void lay_out_tangent(GpTangent *t, const GpModel *m, Arena *arena) {
 
 static void lay_out(GpInstance *p, Arena *arena) {
     const GpModel *m = &p->model;
-    const size_t n = 2 * m->modes, order = gp_propagator_order(m), square = order * order,
+    const size_t n = m->order, order = gp_propagator_order(m), square = order * order,
                  rigid = gp_rigid_modes(m);
     p->K = take(arena, m->blocks);
     p->C = take(arena, m->blocks);

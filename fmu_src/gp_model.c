@@ -3,7 +3,7 @@
    header   magic "GEARPATH", u32 version, u32 0x01020304, u64 file size, u32 CRC-32 of all that follows byte 32,
             u32 zero, char guid[40]
    counts   u32 N, groups, joints, rows, blocks, loads, outputs, variables, excitation, text bytes, tones,
-            source load, pairs, points of the schedule, zero, zero
+            source load, pairs, points of the schedule, states of a given system (which has no N), zero
    sections in the order of `find_sections`: the doubles, the indices, the records, the text */
 #include "gp_model.h"
 
@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "gp_crc.h"
+#include "gp_given.h"
 #include "gp_model_check.h"
 
 enum { HEADER = 72, COUNTS = 16, VERSION = 4, LARGEST_COUNT = 1 << 13, LARGEST_TABLE = 1 << 24, LARGEST_FILE = 1 << 30 };
@@ -58,6 +59,19 @@ static int check_header(GpModel *m, size_t size, GpText *message) {
     return 0;
 }
 
+/* A given system has nothing but inputs, outputs and states, and one of the first or last. */
+static int counts_of_given(const GpModel *m) {
+    if (m->groups || m->joints || m->rows || m->blocks || m->excitation || m->tones || m->pairs || m->points) return -1;
+    return m->source_load == GP_NONE && m->order + m->loads ? 0 : -1;
+}
+
+static int counts_of_network(const GpModel *m) {
+    if (!m->joints || !m->rows || !m->loads || m->excitation >= m->loads) return -1;
+    if (m->pairs && m->pairs != m->modes) return -1;
+    if (m->source_load == GP_NONE ? m->tones != 0 : m->source_load >= m->loads) return -1;
+    return m->points && m->blocks > LARGEST_TABLE / m->points ? -1 : 0;
+}
+
 static int read_counts(GpModel *m, size_t *text_size) {
     uint32_t n[COUNTS];
     memcpy(n, m->bytes + HEADER, sizeof n);
@@ -68,12 +82,10 @@ static int read_counts(GpModel *m, size_t *text_size) {
     m->modes = n[0], m->groups = n[1], m->joints = n[2], m->rows = n[3], m->blocks = n[4];
     m->loads = n[5], m->outputs = n[6], m->variables = n[7], m->excitation = n[8], *text_size = n[9];
     m->tones = n[10], m->source_load = n[11], m->pairs = n[12], m->points = n[13];
-    m->states = 2 * m->modes + (m->source_load != GP_NONE);
-    if (!m->modes || !m->joints || !m->rows || !m->loads || m->excitation >= m->loads) return -1;
-    if (m->pairs && m->pairs != m->modes) return -1;
-    if (m->source_load == GP_NONE ? m->tones != 0 : m->source_load >= m->loads) return -1;
-    if (m->points && m->blocks > LARGEST_TABLE / m->points) return -1;
-    return n[14] || n[15] ? -1 : 0;
+    m->order = gp_is_given(m) ? n[14] : 2 * m->modes;
+    m->states = m->order + (m->source_load != GP_NONE);
+    if (n[15] || (n[14] && !gp_is_given(m))) return -1;
+    return gp_is_given(m) ? counts_of_given(m) : counts_of_network(m);
 }
 
 /* The next section of `count` items: its start, or NULL behind the end of the file. */
@@ -86,6 +98,7 @@ static const void *section(const GpModel *m, size_t *at, size_t size, size_t cou
 }
 
 static int find_sections(GpModel *m, size_t size, size_t text_size) {
+    const size_t given = gp_is_given(m) ? m->order : 0, rows = gp_is_given(m) ? m->outputs : 0;
     size_t at = HEADER + 4 * COUNTS;
     const double *starts;
 #define GP_SECTION(field, count, item) \
@@ -94,7 +107,7 @@ static int find_sections(GpModel *m, size_t size, size_t text_size) {
     m->frequency = starts[0], m->speed = starts[1], m->teeth = starts[2], m->start_torque = starts[3];
     GP_SECTION(m->eigenvalues, m->modes, 8);
     GP_SECTION(m->scale, m->modes, 8);
-    GP_SECTION(m->nominal, m->modes, 8);
+    GP_SECTION(m->nominal, m->modes + given, 8);
     GP_SECTION(m->zeta, m->groups, 8);
     GP_SECTION(m->share, m->groups * m->modes, 8);
     GP_SECTION(m->source, m->rows * m->modes, 8);
@@ -110,6 +123,11 @@ static int find_sections(GpModel *m, size_t size, size_t text_size) {
     GP_SECTION(m->torque, m->points, 8);
     GP_SECTION(m->stiffness_at, m->points * m->blocks, 8);
     GP_SECTION(m->damping_at, m->points * m->blocks, 8);
+    GP_SECTION(m->A, given * given, 8);
+    GP_SECTION(m->B, given * m->loads, 8);
+    GP_SECTION(m->C, rows * given, 8);
+    GP_SECTION(m->D, rows * m->loads, 8);
+    GP_SECTION(m->unit, gp_is_given(m) ? given + m->loads : 0, 8);
     GP_SECTION(m->pair_kind, m->pairs, 4);
     GP_SECTION(m->is_error, m->loads, 4);
     GP_SECTION(m->rotation, m->rows, 4);
@@ -157,9 +175,9 @@ size_t gp_variable_size(const GpModel *m, const GpVariable *v) {
     case GP_PORT_VELOCITIES: return d;
     case GP_STATES:
     case GP_DERIVATIVES: return m->states;
-    case GP_MATRIX_A: return 4 * m->modes * m->modes;
-    case GP_MATRIX_B: return 2 * m->modes * m->loads;
-    case GP_MATRIX_C: return m->linear * 2 * m->modes;
+    case GP_MATRIX_A: return m->order * m->order;
+    case GP_MATRIX_B: return m->order * m->loads;
+    case GP_MATRIX_C: return m->linear * m->order;
     case GP_MATRIX_D: return m->linear * m->loads;
     default: return 1;
     }
@@ -189,7 +207,7 @@ GpVariable gp_variable_element(const GpModel *m, const GpVariable *v, size_t i) 
     case GP_DERIVATIVES: return scalar(GP_DERIVATIVE, i, 0, 0);
     case GP_MATRIX_A:
     case GP_MATRIX_C:
-        d = 2 * m->modes;
+        d = m->order;
         return scalar(v->kind == GP_MATRIX_A ? GP_ENTRY_A : GP_ENTRY_C, 0, i / d, i % d);
     case GP_MATRIX_B:
     case GP_MATRIX_D:

@@ -1,6 +1,6 @@
 #ifndef GP_MODEL_H
 #define GP_MODEL_H
-/* The modal network as read from model.bin (the format is written down in gp_model.c and in fmu/binary.py).
+/* The modal network, or the given linear system (gp_given.h), as read from model.bin (the format is written down in gp_model.c and in fmu/binary.py).
    Read once, checked completely, never changed. All matrices are row-major. */
 #include <stdint.h>
 #include <stdio.h>
@@ -9,7 +9,8 @@
 
 enum { GP_NONE = 0xFFFFFFFFu >> 1 }; /* "no such index" */
 
-enum { GP_DISPLACEMENT, GP_VELOCITY, GP_ACCELERATION, GP_FORCE, GP_POWER, GP_QUANTITIES };
+/* GP_ROW: a row of given matrices C and D */
+enum { GP_DISPLACEMENT, GP_VELOCITY, GP_ACCELERATION, GP_FORCE, GP_POWER, GP_ROW, GP_QUANTITIES };
 
 /* Kinds of scalar variables, and what their index a (and b, c) refers to. */
 enum {
@@ -100,7 +101,7 @@ typedef struct {
 typedef struct {
     unsigned char *bytes; /* the file, which all pointers below point into */
     char guid[40];        /* of the model description it belongs to */
-    size_t modes;         /* N */
+    size_t modes;         /* N, 0 where the system is given */
     size_t groups;        /* components with a modal damping ratio */
     size_t joints;
     size_t rows;          /* n_p: degrees of freedom of all joints */
@@ -114,14 +115,15 @@ typedef struct {
     size_t source_load;   /* the transmission error that the source adds to, or GP_NONE */
     size_t points;        /* of the schedule over the torque, 0 where there is none */
     size_t pairs;         /* N where the modal form of the coupled system is known, else 0 */
-    size_t states;        /* 2 N, and one more for the shaft angle of a source */
+    size_t order;         /* coordinates x of x' = A x + B u: 2 N, or those of a given system */
+    size_t states;        /* the same, and one more for the shaft angle of a source */
     double frequency;     /* start value of the frequency input, Hz */
     double speed;         /* start value of the shaft speed, rev/min */
     double teeth;         /* start value of the tooth count */
     double start_torque;  /* start value of the torque, N m */
     const double *eigenvalues;     /* (N) L, (rad/s)^2, 0 where rigid */
     const double *scale;           /* (N) w: sqrt(L), or a fixed value where rigid, rad/s */
-    const double *nominal;         /* (N) of the two states of each mode */
+    const double *nominal;         /* (N) of the two states of each mode; (order) where the system is given */
     const double *zeta;            /* (groups) start values of the damping ratios */
     const double *share;           /* (groups, N) part of each ratio that a mode takes, not negative */
     const double *source;          /* (rows, N) */
@@ -137,6 +139,8 @@ typedef struct {
     const double *torque;          /* (points) N m, increasing */
     const double *stiffness_at;    /* (points, blocks) at each torque, 0 where a joint does not follow */
     const double *damping_at;      /* (points, blocks) likewise */
+    const double *A, *B, *C, *D;   /* of a given system: (order, order), (order, M), (outputs, order), (outputs, M) */
+    const double *unit;            /* (order + M) of its states and inputs in balanced equations */
     const uint32_t *pair_kind;     /* (pairs) GP_OSCILLATING ... */
     const uint32_t *is_error;      /* (M) 1 where the load is a transmission error */
     const uint32_t *rotation;      /* (rows) 1 where the degree of freedom is a rotation */

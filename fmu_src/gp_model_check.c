@@ -1,5 +1,6 @@
 #include "gp_model_check.h"
 
+#include "gp_given.h"
 #include "gp_linalg.h"
 #include "gp_schedule.h"
 
@@ -10,9 +11,10 @@ static int all_finite(const double *first, const double *end) {
 }
 
 static int numbers_are_good(const GpModel *m) {
-    /* the doubles stand one behind another, from the eigenvalues to the schedule */
-    if (!all_finite(m->eigenvalues, m->damping_at + m->points * m->blocks)) return 0;
-    if (!gp_finite(m->frequency) || m->frequency <= 0 || !gp_finite(m->speed) || !gp_finite(m->teeth)) return 0;
+    /* the doubles stand one behind another, from the eigenvalues to the units */
+    if (!all_finite(m->eigenvalues, m->unit + (gp_is_given(m) ? m->order + m->loads : 0))) return 0;
+    if (gp_is_given(m) ? m->frequency != 0 : !(m->frequency > 0)) return 0;
+    if (!gp_finite(m->frequency) || !gp_finite(m->speed) || !gp_finite(m->teeth)) return 0;
     if (!gp_finite(m->start_torque)) return 0;
     for (size_t r = 0; r < m->modes; r++) {
         if (m->eigenvalues[r] < 0 || !(m->scale[r] > 0) || !(m->nominal[r] > 0)) return 0;
@@ -71,7 +73,7 @@ static int outputs_are_good(const GpModel *m) {
     for (size_t i = 0; i < m->outputs; i++) {
         const GpOutput *o = m->output + i;
         const int of_joint = o->quantity == GP_FORCE || o->quantity == GP_POWER;
-        if (o->quantity >= GP_QUANTITIES || o->zero) return 0;
+        if (o->quantity >= GP_QUANTITIES || o->zero || (o->quantity == GP_ROW) != gp_is_given(m)) return 0;
         if (of_joint ? o->joint >= m->joints || o->dof >= m->joint[o->joint].size
                      : o->joint != GP_NONE || o->dof != 0)
             return 0;
@@ -95,17 +97,17 @@ static int variable_is_good(const GpModel *m, const GpVariable *v) {
     case GP_ORDER_ALPHA:
     case GP_ORDER_POWER: return v->a < m->tones && alone;
     case GP_OUTPUT: return v->a < m->outputs && alone;
-    case GP_ALPHA: return v->a < 3 && alone;
+    case GP_ALPHA: return !gp_is_given(m) && v->a < 3 && alone;
     case GP_JOINT_ALPHA:
     case GP_STIFFNESS_MATRIX:
     case GP_DAMPING_MATRIX:
     case GP_PORT_FORCES:
     case GP_PORT_VELOCITIES: return v->a < m->joints && alone;
     case GP_FRF_REAL:
-    case GP_FRF_IMAG: return v->a < m->outputs && m->output[v->a].quantity != GP_POWER && alone;
+    case GP_FRF_IMAG: return !gp_is_given(m) && v->a < m->outputs && m->output[v->a].quantity != GP_POWER && alone;
     case GP_STATE:
     case GP_DERIVATIVE: return v->a < m->states && alone;
-    case GP_FREQUENCY:
+    case GP_FREQUENCY: return !gp_is_given(m) && !v->a && alone;
     case GP_TIME:
     case GP_STATES:
     case GP_DERIVATIVES:
@@ -120,6 +122,7 @@ static int variable_is_good(const GpModel *m, const GpVariable *v) {
 const char *gp_model_check(const GpModel *m, size_t text_size) {
     if (!text_size || m->text[text_size - 1]) return "its text is not terminated.";
     if (!numbers_are_good(m)) return "a number is out of range.";
+    if (gp_given_check(m)) return gp_given_check(m);
     if (!joints_are_good(m, text_size)) return "a joint is wrong.";
     if (gp_schedule_check(m)) return gp_schedule_check(m);
     if (!outputs_are_good(m)) return "an output is wrong.";

@@ -2,18 +2,19 @@
 
 #include <string.h>
 
+#include "gp_given.h"
 #include "gp_linalg.h"
 #include "gp_waves.h"
 
 static const double LARGEST = 1e16; /* of |A h|: beyond it the results keep no more than three digits, then none */
 
 size_t gp_propagator_order(const GpModel *m) {
-    return 2 * (m->modes + m->loads) + (m->source_load == GP_NONE ? 0 : GP_LEGENDRE);
+    return m->order + 2 * m->loads + (m->source_load == GP_NONE ? 0 : GP_LEGENDRE);
 }
 
 /* h b P(-1)^T and E of P'(s) = P(s) E, where P_k(2 s - 1)' = 2 sum over j = k - 1, k - 3 ... of (2 j + 1) P_j */
 static void add_legendre(double *M, size_t order, const GpModel *m) {
-    const size_t n = 2 * m->modes, first = n + 2 * m->loads;
+    const size_t n = m->order, first = n + 2 * m->loads;
     for (size_t k = 0; k < GP_LEGENDRE; k++) {
         for (size_t i = 0; i < n; i++)
             M[i * order + first + k] = k % 2 ? -M[i * order + n + m->source_load] : M[i * order + n + m->source_load];
@@ -33,10 +34,11 @@ static double size_of(const double *M, size_t n, size_t order, double h) {
 }
 
 int gp_discretise_physical(GpDiscrete *d, GpExpm *w, GpRigid *rigid, const GpModel *m, const GpSystem *s) {
-    const size_t n = 2 * m->modes, order = w->n;
+    const size_t n = m->order, order = w->n;
     double *F;
     memset(w->M, 0, order * order * sizeof *w->M);
     gp_system_matrices(s, m, w->M, order);
+    if (gp_is_given(m)) gp_given_balance(m, w->M, order);
     if (!(size_of(w->M, n, order, d->h) <= LARGEST)) return -1;
     gp_rigid_find(rigid, m, s, w->M, order);
     gp_rigid_remove(rigid, m, w->M, order);
@@ -47,6 +49,7 @@ int gp_discretise_physical(GpDiscrete *d, GpExpm *w, GpRigid *rigid, const GpMod
     F = gp_expm1_matrix(w);
     if (!F) return -1;
     gp_rigid_remove(rigid, m, F, order);
+    if (gp_is_given(m)) gp_given_unbalance(m, F, order);
     for (size_t i = 0; i < n; i++) {
         for (size_t j = 0; j < n; j++) d->transition[j * n + i] = F[i * order + j];
         for (size_t j = n; j < order; j++) d->columns[(j - n) * n + i] = F[i * order + j];

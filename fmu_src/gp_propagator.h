@@ -2,7 +2,7 @@
 #define GP_PROPAGATOR_H
 /* Exact discretisation of the coupled system for a step size, in one of two forms:
        modal      pairs of modes (gp_modes.h): the start parameters, and a basis of modes that is well conditioned
-       physical   a dense propagator from the matrix exponential: anything else
+       physical   a dense propagator from the matrix exponential: anything else, given systems (gp_given.h) too
 
    The inputs within a step are u0 + (u1 - u0) t / h, and for the gear mesh source sum c_k P_k(2 t / h - 1):
        z(h) = z + (Phi - I) z + held u0 + ramp (u1 - u0) + sum_k legendre_k c_k
@@ -20,8 +20,8 @@ typedef struct {
     double h;                 /* step size, s; 0 where unused */
     unsigned long long used;  /* when it was used last, in steps */
     int ready;                /* whether the columns belong to h, the parameters and the form */
-    double *transition;       /* physical: (2N, 2N) Phi - I, column by column; modal: (4, N) */
-    double *columns;          /* (2M + GP_LEGENDRE, 2N) held, ramp, legendre (the last only with a source) */
+    double *transition;       /* physical: (order, order) Phi - I, column by column; modal: (4, N) */
+    double *columns;          /* (2M + GP_LEGENDRE, order) held, ramp, legendre (the last only with a source) */
 } GpDiscrete;
 
 /* Order of the matrix M. */

@@ -29,7 +29,7 @@ static double *visit(const GpInstance *p, int i, size_t *count) {
     case 7: *count = m->loads; return p->slope;
     case 8: *count = m->tones; return p->source.amplitude;
     case 9: *count = m->tones; return p->source.phase;
-    case 10: *count = 2 * m->modes; return p->now;
+    case 10: *count = m->order; return p->now;
     default: *count = 0; return NULL;
     }
 }

@@ -1,5 +1,6 @@
 #include "gp_system.h"
 
+#include "gp_given.h"
 #include "gp_linalg.h"
 
 void gp_system_joints(const GpModel *m, const double *packed, const double *P, double *result) {
@@ -33,7 +34,10 @@ void gp_system_form(GpSystem *s, const GpModel *m, const double *zeta, const dou
 
 void gp_system_matrices(const GpSystem *s, const GpModel *m, double *M, size_t width) {
     const size_t N = m->modes, n = 2 * N;
-    
+    if (gp_is_given(m)) {
+        gp_given_matrices(m, M, width);
+        return;
+    }
     for (size_t r = 0; r < N; r++) {
         double *upper = M + r * width, *lower = M + (N + r) * width;
         upper[N + r] = m->scale[r];
@@ -58,6 +62,8 @@ void gp_system_matrices(const GpSystem *s, const GpModel *m, double *M, size_t w
 void gp_system_motion(const GpSystem *s, const GpModel *m, const double *x, const double *u, GpMotion *motion) {
     const size_t N = m->modes;
     const double *rate = x + N;
+    motion->x = x;
+    motion->u = u;
     for (size_t r = 0; r < N; r++) {
         motion->q[r] = x[r] / m->scale[r];
         motion->v[r] = rate[r];
@@ -75,10 +81,13 @@ void gp_system_motion(const GpSystem *s, const GpModel *m, const double *x, cons
 }
 
 void gp_system_derivative(const GpModel *m, const GpMotion *motion, double *derivative) {
-    for (size_t r = 0; r < m->modes; r++) {
-        derivative[r] = m->scale[r] * motion->v[r];
-        derivative[m->modes + r] = motion->a[r];
-    }
+    for (size_t i = 0; i < m->order; i++) derivative[i] = gp_system_rate(m, motion, i);
+}
+
+double gp_system_rate(const GpModel *m, const GpMotion *motion, size_t i) {
+    const size_t N = m->modes;
+    if (gp_is_given(m)) return gp_given_rate(m, motion, i);
+    return i < N ? m->scale[i] * motion->v[i] : motion->a[i - N];
 }
 
 double gp_system_output(const GpModel *m, const GpMotion *motion, size_t output) {
@@ -90,6 +99,7 @@ double gp_system_output(const GpModel *m, const GpMotion *motion, size_t output)
     case GP_VELOCITY: return gp_dot(row, motion->v, m->modes);
     case GP_ACCELERATION: return gp_dot(row, motion->a, m->modes);
     case GP_FORCE: return motion->g[m->joint[o->joint].first + o->dof];
+    case GP_ROW: return gp_given_output(m, motion, output);
     default:
         for (size_t i = 0; i < m->joint[o->joint].size; i++) {
             const size_t at = m->joint[o->joint].first + i;

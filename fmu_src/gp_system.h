@@ -22,6 +22,7 @@ typedef struct {
     double *v;        /* (N) q' */
     double *a;        /* (N) s' */
     double *g;        /* (rows) joint forces on the receivers */
+    const double *x, *u; /* (order), (M) what it was formed from: all that a given system needs */
 } GpMotion;
 
 /* X of mode r for these damping ratios (groups), rad/s. */
@@ -36,11 +37,12 @@ void gp_system_joints(const GpModel *m, const double *packed, const double *P, d
 /* Writes [A | B] to the top left of a matrix of zeros with `width` columns. */
 void gp_system_matrices(const GpSystem *s, const GpModel *m, double *M, size_t width);
 
-/* The motion that belongs to the state x (2N) and the inputs u (M). */
+/* The motion that belongs to the state x (order) and the inputs u (M), which it refers to. */
 void gp_system_motion(const GpSystem *s, const GpModel *m, const double *x, const double *u, GpMotion *motion);
 
-/* x' (2N) from the motion. */
+/* x' (order) from the motion, and one entry of it. */
 void gp_system_derivative(const GpModel *m, const GpMotion *motion, double *derivative);
+double gp_system_rate(const GpModel *m, const GpMotion *motion, size_t i);
 
 /* The value of one output. */
 double gp_system_output(const GpModel *m, const GpMotion *motion, size_t output);

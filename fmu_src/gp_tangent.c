@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "gp_given.h"
 #include "gp_linalg.h"
 
 static void clear(double *values, size_t count) {
@@ -114,6 +115,7 @@ static double entry(const GpModel *m, const GpSystem *s, const GpTangent *t, uin
     const double *weights;
     size_t output, g;
     double sum = 0;
+    if (gp_is_given(m)) return t ? 0 : gp_given_entry(m, kind, row, column); /* nothing changes given matrices */
     if (kind == GP_ENTRY_A || kind == GP_ENTRY_B) {
         if (row < N && of_states) return !t && column == N + row ? m->scale[row] : 0;
         if (row < N) return m->scale[row] * of->Xd[column * N + row];

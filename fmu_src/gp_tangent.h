@@ -7,7 +7,7 @@
 
 typedef struct {
     /* the direction */
-    double *states;           /* (2N, one more with a source) */
+    double *states;           /* (order, one more with a source) */
     double *input;            /* (M) */
     double *K, *C;            /* (blocks) */
     double *zeta;             /* (groups) */

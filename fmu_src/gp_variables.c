@@ -141,7 +141,7 @@ static void set_entry(GpInstance *p, const GpVariable *v, double *matrix, double
 }
 
 static void set_state(GpInstance *p, size_t index, double value) {
-    const size_t n = 2 * p->model.modes;
+    const size_t n = p->model.order;
     if (index == n) {
         gp_source_turn_to(&p->source, value);
     } else {
@@ -240,9 +240,8 @@ void gp_hold(GpInstance *p) {
 }
 
 static double derivative_value(GpInstance *p, size_t state) {
-    const size_t N = p->model.modes;
-    if (state < N) return p->model.scale[state] * gp_motion(p)->v[state];
-    return state < 2 * N ? gp_motion(p)->a[state - N] : GP_RAD_PER_REV_MIN * p->source.speed;
+    if (state < p->model.order) return gp_system_rate(&p->model, gp_motion(p), state);
+    return GP_RAD_PER_REV_MIN * p->source.speed;
 }
 
 static int singular(GpInstance *p, double frequency) {
@@ -310,7 +309,7 @@ int gp_value(GpInstance *p, const GpVariable *v, double *value) {
     case GP_TONE_AMPLITUDE: *value = p->source.amplitude[v->a]; return 0;
     case GP_TONE_PHASE: *value = p->source.phase[v->a]; return 0;
     case GP_TIME: *value = p->time; return 0;
-    case GP_STATE: *value = v->a < 2 * m->modes ? gp_states(p)[v->a] : gp_source_angle(&p->source); return 0;
+    case GP_STATE: *value = v->a < m->order ? gp_states(p)[v->a] : gp_source_angle(&p->source); return 0;
     case GP_OUTPUT: *value = gp_observed_output(p, v->a); return 0;
     case GP_PORT_FORCE:
     case GP_PORT_VELOCITY: *value = gp_observed_port(p, v); return 0;

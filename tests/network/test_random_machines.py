@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from systems import random_gearbox
 
@@ -16,6 +16,7 @@ from gearpath.network.synthesis import Synthesis
 machines = st.builds(random_gearbox, st.integers(0, 2**32 - 1), st.integers(1, 8))
 helical_machines = st.builds(random_gearbox, st.integers(0, 2**32 - 1), st.integers(1, 8), st.just(True))
 LINES = 2 * np.pi * np.geomspace(20.0, 5000.0, 7)
+_HIGHEST = (2 * np.pi * 1e8) ** 2  # (rad/s)^2: 100 MHz
 
 
 def kinds(network):
@@ -46,6 +47,8 @@ def rounding(network, load, force):
 def check_synthesis_against_reference(system):
     network = assemble(system)
     modal = network.modal()
+    # a span of a micrometre (modes at 1 GHz) leaves 8 digits of the reference, whatever the synthesis does
+    assume(modal.eigenvalues.max() < _HIGHEST)
     load = next(item for item in modal.loads if item.name == modal.excitation)
     solved = Synthesis(modal, [load]).solve(LINES)
     force = solved.force[:, 0]

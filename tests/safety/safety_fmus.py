@@ -1,11 +1,13 @@
-"""The small networks as unpacked FMUs, and what a C host is told about one."""
+"""The small networks and linear systems as unpacked FMUs, and what a C host is told about one."""
 
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from safety_networks import networks
+from safety_networks import networks, systems
 
+from gearpath.fmu.linear_export import export_linear
+from gearpath.fmu.linear_table import linear_table
 from gearpath.fmu.native import export_native
 from gearpath.fmu.native_table import native_table
 from gearpath.fmu.variables import Kind, Variable
@@ -42,7 +44,7 @@ class SmallFmu:
 
 
 def export_all(folder: Path) -> list[SmallFmu]:
-    """Every small network in both versions of FMI, in folders of their own below `folder`."""
+    """Every small network and linear system in both versions of FMI, in folders of their own below `folder`."""
     found = []
     for name, network in networks().items():
         for fmi in ("2.0", "3.0"):
@@ -57,11 +59,21 @@ def export_all(folder: Path) -> list[SmallFmu]:
                 version="0",
                 fmi=fmi,
             )
-            with zipfile.ZipFile(path) as archive:
-                archive.extractall(place)
             states = 2 * len(network.eigenvalues) + (network.source is not None)
-            found.append(SmallFmu(name, fmi, place, native_table(network, FREQUENCY, fmi), states))
+            found.append(_unpacked(name, fmi, path, native_table(network, FREQUENCY, fmi), states))
+    for name, system in systems().items():
+        for fmi in ("2.0", "3.0"):
+            place = folder / f"{name}_{fmi[0]}"
+            place.mkdir(parents=True)
+            path = export_linear(system, place / "it.fmu", fmi=fmi, version="0", documentation=False)
+            found.append(_unpacked(name, fmi, path, linear_table(system, fmi), len(system.states)))
     return found
+
+
+def _unpacked(name: str, fmi: str, path: Path, variables: tuple[Variable, ...], states: int) -> SmallFmu:
+    with zipfile.ZipFile(path) as archive:
+        archive.extractall(path.parent)
+    return SmallFmu(name, fmi, path.parent, variables, states)
 
 
 def _role(variable: Variable) -> str:

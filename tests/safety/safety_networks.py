@@ -1,9 +1,13 @@
-"""Networks of one or two modes that together reach all of the runtime, small so that a fuzzer runs them often."""
+"""Networks of one or two modes and linear systems that together reach all of the runtime.
+
+Small, so that a fuzzer runs them often.
+"""
 
 from dataclasses import replace
 
 import numpy as np
 
+from gearpath.fmu.linear_system import LinearSystem
 from gearpath.network.modal import ModalNetwork
 from gearpath.network.records import JointRows, Load, MeshSource, Output, Schedule, Tone
 
@@ -16,6 +20,18 @@ def networks() -> dict[str, ModalNetwork]:
         "source": _with_source(plain),
         "schedule": _with_schedule(plain),
         "critical": _critical(),
+    }
+
+
+def systems() -> dict[str, LinearSystem]:
+    """By name: three states in units far apart; a pure gain; states that nothing reaches. All are called `it`."""
+    A = np.array([[-200.0, 3e6, 0.0], [-1.0, -50.0, 0.0], [0.0, 2e-3, 0.0]])
+    B, C, D = np.array([[1.0, 0.0], [0.0, 1e-6], [0.0, 0.0]]), np.array([[1.0, 0.0, 5.0]]), np.array([[0.0, 2.0]])
+    none = np.zeros((0, 0))
+    return {
+        "given": LinearSystem("it", A, B, C, D, ("u", "v"), ("y",), ("x_1", "x_2", "x_3")),
+        "gain": LinearSystem("it", none, none.reshape(0, 1), none.reshape(1, 0), np.array([[2.5]]), ("u",), ("y",), ()),
+        "free": LinearSystem("it", A[:2, :2], np.zeros((2, 0)), C[:, :2], np.zeros((1, 0)), (), ("y",), ("x_1", "x_2")),
     }
 
 

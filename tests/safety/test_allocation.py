@@ -43,7 +43,9 @@ def test_no_allocation_after_initialisation(hosts, small_fmus):
 
     Getting a state into a new handle, and deserialising into one, may allocate: FMI wants the handle to own its memory.
     """
-    for fmu in small_fmus:
+    driven = [fmu for fmu in small_fmus if any(v.causality == "input" for v in fmu.variables)]  # the hosts set one
+    assert len(driven) == len(small_fmus) - 2
+    for fmu in driven:
         done = subprocess.run([hosts[fmu.fmi], *fmu.host_arguments()], capture_output=True, text=True, check=False)
         assert done.returncode == 0, f"{fmu.name} {fmu.fmi}: {done.stdout}"
         calls, allocations, frees, faults = map(int, re.findall(r"\d+", done.stdout))

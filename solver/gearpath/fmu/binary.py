@@ -29,22 +29,23 @@ def payload(network: ModalNetwork, variables: Sequence[Variable], frequency: flo
         InputError: a number is not finite, or the network is too large for the runtime.
     """
     reals = _reals(network, frequency)
-    _check_finite(reals)
+    check_finite(reals)
     modes = coupled_modes(network)
-    names, text = _names([joint.name for joint in network.joints] + [variable.name for variable in variables])
+    names, text = named_text([joint.name for joint in network.joints] + [variable.name for variable in variables])
     counts = _counts(network, len(variables), len(text), modes is not None)
     parts = [struct.pack("<16I", *counts)]
     form = [*_modal_form(modes), *_tones(network), *_schedule(network)]
-    _check_finite(form)
+    check_finite(form)
     for array in (*reals, *form):
         parts.append(np.ascontiguousarray(array, dtype="<f8").tobytes())
     kinds = [int(kind) for kind in modes.kinds] if modes else []
     for index in (kinds, *_indices(network, variables, names)):
         parts.append(np.asarray(index, dtype="<u4").tobytes())
-    return b"".join(_padded(part) for part in [*parts, text])
+    return b"".join(padded(part) for part in [*parts, text])
 
 
-def _check_finite(arrays: Sequence[Real]) -> None:
+def check_finite(arrays: Sequence[Real]) -> None:
+    """Refuse numbers that are not finite."""
     if not all(np.isfinite(array).all() for array in arrays):
         raise InputError("a matrix of the network holds a number that is not finite, so no FMU can be made of it")
 
@@ -175,7 +176,8 @@ def _symmetric(matrix: Real) -> Real:
     return 0.5 * (matrix + matrix.T)
 
 
-def _names(names: Sequence[str]) -> tuple[list[int], bytes]:
+def named_text(names: Sequence[str]) -> tuple[list[int], bytes]:
+    """The offset of each name in the text section, and that section: zero-terminated UTF-8."""
     offsets, text = [], b""
     for name in names:
         offsets.append(len(text))
@@ -183,7 +185,8 @@ def _names(names: Sequence[str]) -> tuple[list[int], bytes]:
     return offsets, text
 
 
-def _padded(part: bytes) -> bytes:
+def padded(part: bytes) -> bytes:
+    """A section as the file holds it."""
     return part + b"\0" * (-len(part) % 8)
 
 

@@ -41,7 +41,7 @@ class Identity:
 def model_description(variables: Sequence[Variable], identity: Identity) -> bytes:
     """The XML file of FMI 2.0: all capabilities and dependencies written out, no date in it.
 
-    Model exchange is offered where states are among the variables.
+    Model exchange is offered by what is compiled, which has sources.
     """
     root = ET.Element(
         "fmiModelDescription",
@@ -53,7 +53,7 @@ def model_description(variables: Sequence[Variable], identity: Identity) -> byte
         variableNamingConvention="structured",
         numberOfEventIndicators="0",
     )
-    _interfaces(root, identity, any(variable.kind is Kind.STATE for variable in variables))
+    _interfaces(root, identity, exchange=bool(identity.sources))
     add_units(root, variables, "SimpleType")
     add_categories(root)
     add_experiment(root, identity.experiment)
@@ -62,7 +62,7 @@ def model_description(variables: Sequence[Variable], identity: Identity) -> byte
     return as_file(root)
 
 
-def _interfaces(root: ET.Element, identity: Identity, exchange: bool) -> None:
+def _interfaces(root: ET.Element, identity: Identity, *, exchange: bool) -> None:
     common = {
         "modelIdentifier": identity.model_identifier,
         "needsExecutionTool": "false",
@@ -114,8 +114,9 @@ def add_units(root: ET.Element, variables: Sequence[Variable], element: str) -> 
             ET.SubElement(ET.SubElement(types, element, name=name), "Real", attributes)
         else:
             ET.SubElement(types, element, {"name": name, **attributes})
-    if not len(types):
-        root.remove(types)
+    for section in (definitions, types):
+        if not len(section):
+            root.remove(section)
 
 
 def declared_type(variable: Variable) -> str | None:

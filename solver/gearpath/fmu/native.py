@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from .native_table import native_table
 from .package import write_fmu
 from .scheduled import check_matrix, check_schedule
 from .supplements import supplements
+from .variables import Variable
 
 _PLACEHOLDER = "{00000000-0000-0000-0000-000000000000}"
 
@@ -55,29 +56,17 @@ def export_native(
     if network.schedule is not None:
         network = network.at_torque(network.schedule.first)
     variables = native_table(network, frequency, fmi)
-    sources = runtime_files.sources(fmi)
-    content = payload(network, variables, frequency)
-    identity = Identity(
+    experiment = Experiment(float(start_time), float(stop_time), float(step_size))
+    files = core_files(
+        variables,
+        payload(network, variables, frequency),
+        fmi,
         name=network.name,
         model_identifier=model_identifier,
         description=description,
-        guid=_PLACEHOLDER,
         version=version,
-        experiment=Experiment(float(start_time), float(stop_time), float(step_size)),
-        sources=[name for name in sorted(sources) if name.endswith(".c")],
+        experiment=experiment,
     )
-    xml = model_description3(variables, identity) if fmi == "3.0" else model_description(variables, identity)
-    guid = content_guid(content, xml)
-    files = {
-        "modelDescription.xml": xml.replace(_PLACEHOLDER.encode(), guid.encode(), 1),
-        "resources/model.bin": model_file(guid, content),
-        "documentation/licenses/license.txt": runtime_files.licence(),
-        **{f"sources/{name}": text for name, text in sources.items()},
-        **{
-            f"binaries/{folder}/{model_identifier}{extension}": library
-            for (folder, extension), library in runtime_files.binaries(fmi).items()
-        },
-    }
     if documentation is not None:
         files |= supplements(
             network,
@@ -85,18 +74,58 @@ def export_native(
             fmi,
             description=description,
             version=version,
-            experiment=identity.experiment,
+            experiment=experiment,
             documentation=documentation,
             reference=documentation,
             band=band,
         )
-    if fmi == "3.0":
-        files["sources/buildDescription.xml"] = build_description(identity)
     for name, extra in (extra_files or {}).items():
         if name in files or name.startswith("/") or "\\" in name or ".." in name.split("/"):
             raise InputError(f"{name!r} cannot be added to the FMU; it exists already or is no relative path")
         files[name] = extra
     return write_fmu(path, files)
+
+
+def core_files(
+    variables: Sequence[Variable],
+    content: bytes,
+    fmi: str,
+    *,
+    name: str,
+    model_identifier: str,
+    description: str,
+    version: str,
+    experiment: Experiment,
+) -> dict[str, bytes]:
+    """What makes an FMU run: description, data (`content` is model.bin behind its header), binaries and sources.
+
+    The GUID is a hash of model and description.
+    """
+    sources = runtime_files.sources(fmi)
+    identity = Identity(
+        name=name,
+        model_identifier=model_identifier,
+        description=description,
+        guid=_PLACEHOLDER,
+        version=version,
+        experiment=experiment,
+        sources=[file for file in sorted(sources) if file.endswith(".c")],
+    )
+    xml = model_description3(variables, identity) if fmi == "3.0" else model_description(variables, identity)
+    guid = content_guid(content, xml)
+    files = {
+        "modelDescription.xml": xml.replace(_PLACEHOLDER.encode(), guid.encode(), 1),
+        "resources/model.bin": model_file(guid, content),
+        "documentation/licenses/license.txt": runtime_files.licence(),
+        **{f"sources/{file}": text for file, text in sources.items()},
+        **{
+            f"binaries/{folder}/{model_identifier}{extension}": library
+            for (folder, extension), library in runtime_files.binaries(fmi).items()
+        },
+    }
+    if fmi == "3.0":
+        files["sources/buildDescription.xml"] = build_description(identity)
+    return files
 
 
 def check_arguments(identifier: str, start: float, stop: float, step: float) -> None:

@@ -90,8 +90,11 @@ def _prefix(source: MeshSource) -> str:
 
 
 def _state_names(network: ModalNetwork) -> tuple[str, ...]:
+    quoted = {name: f"'{name}'" if "+" in name else name for name in network.components}  # of rigidly joined ones
     modes = [
-        f"{name}.mode_{k + 1}" for name, block in network.components.items() for k in range(block.stop - block.start)
+        f"{quoted[name]}.mode_{k + 1}"
+        for name, block in network.components.items()
+        for k in range(block.stop - block.start)
     ]
     return (*(f"{mode}.x" for mode in modes), *(f"{mode}.v" for mode in modes))
 

@@ -50,12 +50,16 @@ def answers(
 
 def sweeps(network: ModalNetwork, times: Real) -> dict[str, Real]:
     """A swept sine for every load, from standstill to a tenth of the sampling rate, each with an end of its own."""
-    t, span = times - times[0], times[-1] - times[0]
-    highest, count = _HIGHEST * (len(times) - 1) / span, len(network.loads)
     return {
-        load.name: load_nominal(load) * np.sin(np.pi * highest * (1.0 - 0.5 * k / count) * t**2 / span)
-        for k, load in enumerate(network.loads)
+        load.name: load_nominal(load) * swept(times, k / len(network.loads)) for k, load in enumerate(network.loads)
     }
+
+
+def swept(times: Real, place: float) -> Real:
+    """A sine swept from standstill to a tenth of the sampling rate, less the higher its place from 0 to 1 is."""
+    t, span = times - times[0], times[-1] - times[0]
+    highest = _HIGHEST * (len(times) - 1) / span
+    return np.asarray(np.sin(np.pi * highest * (1.0 - 0.5 * place) * t**2 / span))
 
 
 def _linear_outputs(network: ModalNetwork) -> list[Output]:

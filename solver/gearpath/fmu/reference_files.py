@@ -19,7 +19,7 @@ _LAYERED = "http://fmi-standard.org/fmi-ls-manifest"
 _PURPOSE = "Layered Standard providing information on related files included in an FMU."  # wording of the standard
 _TEXT = """Reference files of {name}
 
-sweep_in.csv           inputs: a swept sine in every load ({step} s between rows); the others keep their start values
+sweep_in.csv           inputs: swept sines ({step} s between rows); those that are no signals keep their start values
 sweep_held_out.csv     outputs where the inputs are held from row to row, as importers do by default in co-simulation
 sweep_linear_out.csv   outputs where they vary linearly from row to row: model exchange, or co-simulation with
                        fmi2SetRealInputDerivatives or fmi3IntermediateUpdate
@@ -34,20 +34,31 @@ value, model exchange to the tolerance of its solver.
 
 def reference_files(network: ModalNetwork, variables: Sequence[Variable], experiment: Experiment) -> dict[str, bytes]:
     """All files of the layered standard, by their path in the FMU."""
-    start, stop = experiment.start_time, experiment.stop_time
-    step = min(_COARSER * experiment.step_size, (stop - start) / STEPS)
-    times: Real = start + step * np.arange(STEPS + 1, dtype=float)
+    times, step = rows(experiment)
     loads, columns = sweeps(network, times), {"time": times}
     for variable in variables:
         if variable.causality == "input":
             value = variable.start if isinstance(variable.start, float) else 0.0
             columns[variable.name] = loads.get(variable.name, np.full(len(times), value))
-    files, found = {"sweep_in.csv": _csv(columns)}, answers(network, variables, loads, step)
+    return answered(network.name, columns, answers(network, variables, loads, step), step)
+
+
+def rows(experiment: Experiment) -> tuple[Real, float]:
+    """The times of the rows, and the step between them, s."""
+    start, stop = experiment.start_time, experiment.stop_time
+    step = min(_COARSER * experiment.step_size, (stop - start) / STEPS)
+    return start + step * np.arange(STEPS + 1, dtype=float), step
+
+
+def answered(system: str, inputs: Mapping[str, Real], found: Sequence[Answer], step: float) -> dict[str, bytes]:
+    """The files of what was simulated; `inputs` begin with the column "time", whose rows are `step` (s) apart."""
+    times, start = inputs["time"], float(inputs["time"][0])
+    files = {"sweep_in.csv": _csv(inputs)}
     for answer in found:
         files[f"sweep_{answer.name}_out.csv"] = _csv({"time": times, **answer.columns})
-    files["sweep.exp"] = _experiments(network.name, found, times, step)
+    files["sweep.exp"] = _experiments(system, found, times, step)
     files["fmi-ls-manifest.xml"] = _manifest(files)
-    text = _TEXT.format(name=network.name, start=f"{start!r}", stop=f"{float(times[-1])!r}", step=f"{step!r}")
+    text = _TEXT.format(name=system, start=f"{start!r}", stop=f"{float(times[-1])!r}", step=f"{step!r}")
     return {
         **{f"{FOLDER}/{name}": content for name, content in files.items()},
         "documentation/fmi-ls-ref.txt": text.encode(),
@@ -63,7 +74,7 @@ def _csv(columns: Mapping[str, Real]) -> bytes:
 
 def _experiments(name: str, answers: Sequence[Answer], times: Real, step: float) -> bytes:
     """sweep.exp, as the harmonised experiments format of the Modelica Association has it."""
-    root = ET.Element("Experiments", name=f"Sweeps of {name}", description="Swept sines in all loads at once")
+    root = ET.Element("Experiments", name=f"Sweeps of {name}", description="Swept sines in all signals at once")
     for answer in answers:
         one = ET.SubElement(root, "Experiment", name=f"sweep_{answer.name}", description=f"Sweep, {answer.words}")
         span = {"startTime": repr(float(times[0])), "stopTime": repr(float(times[-1])), "stepSize": repr(step)}

@@ -77,8 +77,8 @@ class Variable:
     derivative_of: str | None = None  # the state whose derivative it is
 
 
-# One bname of FMI's structured naming convention, or several with dots.
-_NAME = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
+# One bname of FMI's structured naming convention, or several with dots; a joined body, as 'casing+frame', is quoted.
+_NAME = re.compile(r"([A-Za-z_]\w*|'\w+(\+\w+)+')(\.[A-Za-z_]\w*)*", re.ASCII)
 _NOMINAL = {"displacement": 1e-6, "velocity": 1e-3, "acceleration": 1.0, "force": 100.0, "power": 1e-3}
 _QUANTITY = {
     "displacement": "displacement",

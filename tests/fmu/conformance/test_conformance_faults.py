@@ -7,7 +7,7 @@ from gearpath.fmu.conformance.archive import Archive
 from gearpath.fmu.conformance.documents import DESCRIPTION, parse
 from gearpath.fmu.conformance.instance import CallError, Instance
 from gearpath.fmu.conformance.reading import read
-from gearpath.fmu.conformance.running import _unpack, library_of
+from gearpath.fmu.conformance.running import library_of, unpack
 
 
 @pytest.fixture(scope="module")
@@ -17,7 +17,7 @@ def look(good, tmp_path_factory):
     folders = {base: tmp_path_factory.mktemp(f"unpacked{base}") for base in "23"}
     fmus = {base: read(archives[base], int(base), parse(archives[base], DESCRIPTION)[0], {}) for base in "23"}
     for base in "23":
-        _unpack(fmus[base], folders[base])
+        unpack(fmus[base], folders[base])
 
     def run(module, base, interface):
         found = module.check(fmus[base], folders[base], library_of(fmus[base], interface, folders[base]), interface)

@@ -10,7 +10,7 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max_size, unsi
 
 /* Small enough to be quick: the reader itself has seen the large ones. */
 static int is_small(const GpModel *m) {
-    return m->modes <= 6 && m->rows <= 12 && m->loads <= 4 && m->outputs <= 24 && m->variables <= 400 && m->tones <= 4;
+    return m->order <= 12 && m->rows <= 12 && m->loads <= 4 && m->outputs <= 24 && m->variables <= 400 && m->tones <= 4;
 }
 
 static void set_all(GpInstance *p, double factor) {

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import prod
 from typing import Any
 
 from .archive import Archive
@@ -134,9 +135,9 @@ class Fmu:
         """The guid of FMI 2, the instantiationToken of FMI 3."""
         return str(self.root.get("guid" if self.version == 2 else "instantiationToken", ""))
 
-    def size(self, variable: Variable) -> int | None:
-        """Number of elements, the product of the dimensions; None where one leads nowhere."""
-        product = 1
+    def shape(self, variable: Variable) -> tuple[int, ...] | None:
+        """Sizes of the dimensions, none for a scalar; None where one leads nowhere."""
+        sizes: list[int] = []
         for dimension in variable.dimensions:
             size = dimension.start
             if dimension.reference is not None:
@@ -144,8 +145,13 @@ class Fmu:
                 size = whole(holder.start[0]) if holder and holder.start else None
             if size is None:
                 return None
-            product *= size
-        return product
+            sizes.append(size)
+        return tuple(sizes)
+
+    def size(self, variable: Variable) -> int | None:
+        """Number of elements, the product of the dimensions; None where one leads nowhere."""
+        shape = self.shape(variable)
+        return None if shape is None else prod(shape)
 
 
 def real(text: str | None) -> float | None:

@@ -65,11 +65,14 @@ class Instance:
         self.callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
         return self.callbacks
 
-    def enter_initialization(self) -> None:
-        """From a new instance to initialization mode at time 0."""
+    def enter_initialization(self, time: float = 0.0) -> None:
+        """From a new instance to initialization mode."""
+        self.time = time
         if self.fmu.version == 2:
-            self.setupExperiment(startTime=0.0)
-        self.enterInitializationMode()
+            self.setupExperiment(startTime=time)
+            self.enterInitializationMode()
+        else:
+            self.enterInitializationMode(startTime=time)
 
     def leave_initialization(self) -> None:
         """To continuous time (model exchange) or to the first communication point."""
@@ -77,18 +80,17 @@ class Instance:
         if self.interface == "ModelExchange":
             self.settle()
 
-    def settle(self) -> None:
-        """Handle events until none is left."""
+    def settle(self) -> tuple[bool, float]:
+        """Handle events until none is left: whether a next event has a time, and that time."""
         for _ in range(100):
-            if self.fmu.version == 2:
-                again, ended = self.newDiscreteStates()[:2]
-            else:
-                again, ended = self.updateDiscreteStates()[:2]
+            found = self.newDiscreteStates() if self.fmu.version == 2 else self.updateDiscreteStates()
+            again, ended = found[:2]
             if ended:
                 raise CallError("the FMU wants to end before it began")
             if not again:
-                break
-        self.enterContinuousTimeMode()
+                self.enterContinuousTimeMode()
+                return bool(found[4]), float(found[5])
+        raise CallError("the FMU asks for another event iteration, 100 times over")
 
     def step(self, size: float) -> None:
         """One communication step."""

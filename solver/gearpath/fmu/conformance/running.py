@@ -36,7 +36,7 @@ def check(fmu: Fmu) -> Iterator[Finding]:
     """Unpack, run, and collect what the process finds before it ends, however it ends."""
     with tempfile.TemporaryDirectory(prefix="gearpath-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
-        _unpack(fmu, folder / "fmu")
+        unpack(fmu, folder / "fmu")
         kinds = [kind for kind in fmu.interfaces if kind != "ScheduledExecution"]
         if not any(library_of(fmu, kind, folder / "fmu") for kind in kinds):
             machine = " or ".join(of_host(fmu.version))
@@ -46,7 +46,8 @@ def check(fmu: Fmu) -> Iterator[Finding]:
         yield from _run(fmu, folder)
 
 
-def _unpack(fmu: Fmu, folder: Path) -> None:
+def unpack(fmu: Fmu, folder: Path) -> None:
+    """Write all files of an FMU, whose names were checked, below a folder."""
     for name in fmu.archive.names:
         content = fmu.archive.read(name)
         if content is not None:

@@ -1,6 +1,6 @@
 """The page itself: one HTML file without script, style file or anything from outside, on light and dark screens."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 
 import numpy as np
@@ -107,12 +107,20 @@ def documentation(
         "files": ("Terminals and reference results", guide.files(reference)),
         "variables": ("Variables", tables.variables(variables)),
     }
+    return page(network.name, description, _facts(network, variables, fmi, experiment), sections, version)
+
+
+def page(
+    name: str, description: str, facts: Mapping[str, str], sections: Mapping[str, tuple[str, str]], version: str
+) -> bytes:
+    """The HTML file of facts (text) and sections (key -> heading and HTML); a section without content is left out."""
     shown = {key: section for key, section in sections.items() if section[1]}
+    listed = "\n".join(f"<dt>{key}</dt><dd>{escape(text)}</dd>" for key, text in facts.items())
     return _PAGE.format(
-        name=escape(network.name),
+        name=escape(name),
         description=escape(description),
         style=_style(),
-        facts=_facts(network, variables, fmi, experiment),
+        facts=f"<dl>\n{listed}\n</dl>",
         contents="\n".join(f'<li><a href="#{key}">{heading}</a></li>' for key, (heading, _) in shown.items()),
         sections="\n".join(_SECTION.format(key, *section) for key, section in shown.items()),
         version=escape(version),
@@ -128,7 +136,7 @@ def _highest(network: ModalNetwork) -> float:
     return float(np.sqrt(network.eigenvalues.max(initial=0.0)) / (2.0 * np.pi))
 
 
-def _facts(network: ModalNetwork, variables: Sequence[Variable], fmi: str, experiment: Experiment) -> str:
+def _facts(network: ModalNetwork, variables: Sequence[Variable], fmi: str, experiment: Experiment) -> dict[str, str]:
     kinds: dict[str, int] = {}
     for joint in network.joints:
         kinds[joint.kind] = kinds.get(joint.kind, 0) + 1
@@ -145,4 +153,4 @@ def _facts(network: ModalNetwork, variables: Sequence[Variable], fmi: str, exper
     }
     if np.isfinite(network.band):
         facts["Exact up to"] = f"{network.band:g} Hz (components reduced to their band)"
-    return "<dl>\n" + "\n".join(f"<dt>{key}</dt><dd>{escape(text)}</dd>" for key, text in facts.items()) + "\n</dl>"
+    return facts
