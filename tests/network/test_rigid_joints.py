@@ -1,6 +1,7 @@
 """Rigid joints against one-piece bodies, closed forms, the limit of stiff joints, and their refusals."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -140,7 +141,7 @@ def frame_bars(factors, *, whole=False):
         return FrameBeam(ends, STEEL, section, 0.9, 3)
 
     def frame(names, factor):
-        beams = {f"{a}_{b}": bar(a, b) for a, b in zip(names, names[1:])}
+        beams = {f"{a}_{b}": bar(a, b) for a, b in pairwise(names)}
         return Frame({name: nodes[name] for name in names}, beams, loss_factor=factor)
 
     low = spring(Port("one", place="low"), ground(), 1e6, time=1e-5)

@@ -155,7 +155,8 @@ def test_the_operating_point_is_that_of_very_stiff_joints():
         }
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            found.append(operating_point(replace(model.system, components=parts, joints={**joints, "w": weld or stiff})))
+            joined = replace(model.system, components=parts, joints={**joints, "w": weld or stiff})
+            found.append(operating_point(joined))
     for name, state in found[0].items():
         np.testing.assert_allclose(state.load, found[1][name].load, rtol=1e-5, atol=1e-5 * abs(state.load).max())
 

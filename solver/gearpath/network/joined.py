@@ -155,9 +155,10 @@ def _observed(network: ModalNetwork, found: Sequence[Group]) -> tuple[Output, ..
 def _slips(network: ModalNetwork, row: Real) -> bool:
     """Whether damping of any component can make row X d differ from 0."""
     w = np.sqrt(network.eigenvalues)
-    for load in network.loads:
-        for name in network.modal_damping if load.mesh_displacement is not None else ():
-            terms = row * w * load.mesh_displacement * network.damping_share(name)
+    moved = [load.mesh_displacement for load in network.loads if load.mesh_displacement is not None]
+    for d in moved:
+        for name in network.modal_damping:
+            terms = row * w * d * network.damping_share(name)
             if abs(terms.sum()) > _REACHED * abs(terms).sum():
                 return True
     return False

@@ -88,7 +88,8 @@ def reference_solution(network: Network, omega: Real) -> Reference:
             own = 1j * w * load.mesh_displacement
             v = v + own
             input_power[k] += 0.5 * np.real(np.vdot(B @ own, g))
-        force[:, k], velocity[:, k], path_power[:, k] = g, motion @ v.astype(complex), 0.5 * np.real(np.conj(receiver @ v) * g)
+        force[:, k], velocity[:, k] = g, motion @ v.astype(complex)
+        path_power[:, k] = 0.5 * np.real(np.conj(receiver @ v) * g)
     carried = [joint.name in network.paths for joint in network.joints for _ in joint.dofs]
     return Reference(force, velocity, input_power, path_power, ratio(path_power[carried].sum(axis=0), input_power))
 

@@ -7,7 +7,7 @@ from dataclasses import fields, is_dataclass
 
 from ..components import GearTrain, Section
 from ..components.dofs import is_rotation
-from ..joints import Joint, Port
+from ..joints import RIGID, Joint, Port
 from ..joints.joint import Matrix
 from ..network.ports import joint_place
 from ..network.system import MeshExcitation, System
@@ -105,6 +105,9 @@ def matrix_table(system: System) -> Table:
     rows: list[list[Cell]] = []
     for names in alike.values():
         joint = system.joints[names[0]]
+        if joint.kind == RIGID:
+            rows.append([listed(names), joint.kind, f"holds {', '.join(joint.dofs or system.dofs)}", "–"])
+            continue
         rows.append(
             [listed(names), joint.kind, _matrix(joint, joint.stiffness, False), _matrix(joint, joint.damping, True)]
         )

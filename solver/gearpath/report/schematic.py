@@ -1,7 +1,7 @@
 """A machine drawn in space from its own data: shafts, gears, bearings, casing, mounts, line of action.
 
 Lengths and radii of shafts and gears are to scale; the model says nothing about the shape of a casing, so that one is
-drawn as a tray with two walls, and mounts as springs below it.
+drawn as a tray with two walls, and mounts as springs below it. Rigid joints are not drawn.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..components import GearTrain
+from ..joints import RIGID
 from ..network.ports import joint_place
 from ..numerics.arrays import Real
 from .solids import INK, cylinder, disk, outline, polygon, to_page
@@ -33,7 +34,7 @@ def draw(axes: Any, model: Model) -> None:
     places = [
         (name, "mount" if any(port.is_ground for port in joint.between) else "bearing", np.array(at))
         for name, joint in model.system.joints.items()
-        if (at := joint_place(model.system, joint)) is not None
+        if joint.kind != RIGID and (at := joint_place(model.system, joint)) is not None
     ]
     trains = [part for part in model.system.components.values() if isinstance(part, GearTrain)]
     tray = _Tray.around(places, trains)

@@ -1,5 +1,6 @@
 """The time twin as python-control objects."""
 
-from .twin import signal_name, state_space
+from .signals import signal_name
+from .twin import state_space
 
 __all__ = ["signal_name", "state_space"]

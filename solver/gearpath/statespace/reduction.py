@@ -15,6 +15,7 @@ from .reduced.balanced import balanced
 from .reduced.certificate import Comparison, certificate_of
 from .reduced.choice import certified, check_request, reduced_network
 from .reduced.passivity import is_positive_real
+from .signals import with_units
 from .twin import state_space
 
 
@@ -82,6 +83,9 @@ def _made(
         remove_useless_states=False,
     )
     made.certificate, made.network, made._comparison = certificate, network, comparison
+    about = f"Reduced state space of {whole.name}: loads to all outputs that are linear in them."
+    units = [list(found.values()) for found in (whole.input_units, whole.output_units, whole.state_units)]
+    with_units(made, about, *(units[:2] if states is None else units))
     return made
 
 

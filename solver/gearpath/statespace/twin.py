@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING
 from ..errors import MissingExtraError
 from ..network.modal import ModalNetwork
 from ..network.time_twin import time_twin
+from .signals import signal_name, with_units
 
 if TYPE_CHECKING:
     import control
 
-
-def signal_name(variable: str) -> str:
-    """python-control's name of an FMU variable: it allows no dot, so `bearing_1.force_uy` is `bearing_1/force_uy`."""
-    return variable.replace(".", "/")
+_STATE_UNIT = "J^0.5"
 
 
 def state_space(network: ModalNetwork) -> control.StateSpace:
     """x' = A x + B u, y = C x + D u: all loads as inputs, all linear outputs (SI units, as the FMU variables).
 
     States come in two halves, mode by mode: `component/mode_k/x`, the modal displacement times the mode's angular
-    frequency, and `component/mode_k/v`, the modal velocity without what the transmission error adds at once.
+    frequency, and `component/mode_k/v`, the modal velocity without what the transmission error adds at once. Modes are
+    mass-normalised: both are in J^0.5, and half the squared norm of an elastic mode's pair is its energy. Units of all
+    signals are in `input_units`, `output_units`, `state_units` and the object's own docstring.
     """
     try:
         import control
@@ -31,7 +31,7 @@ def state_space(network: ModalNetwork) -> control.StateSpace:
     modes = [
         f"{name}/mode_{k + 1}" for name, block in network.components.items() for k in range(block.stop - block.start)
     ]
-    return control.StateSpace(
+    plant = control.StateSpace(
         twin.A,
         twin.B,
         twin.C,
@@ -39,6 +39,11 @@ def state_space(network: ModalNetwork) -> control.StateSpace:
         inputs=[signal_name(load.name) for load in twin.loads],
         outputs=[signal_name(output.name) for output in twin.outputs],
         states=[f"{mode}/x" for mode in modes] + [f"{mode}/v" for mode in modes],
-        name=network.name,
+        name=signal_name(network.name),
         remove_useless_states=False,
     )
+    about = f"State space of {network.name}: loads to all outputs that are linear in them."
+    with_units(
+        plant, about, [u.unit for u in twin.loads], [y.unit for y in twin.outputs], [_STATE_UNIT] * twin.A.shape[0]
+    )
+    return plant
