@@ -24,6 +24,7 @@ from .hints import hint
 from .wording import show
 
 T = TypeVar("T")
+Stamps = tuple[tuple[int, int], ...]
 _MATRIX_FORMATS = (".npz", ".op4", ".sti", ".mtx")
 _MODE_FORMATS = {".npz": read_modes_npz, ".unv": read_modes_uff, ".uff": read_modes_uff}
 _LENGTH = {"SI": 1.0, "mm-t-s": 1e-3}  # m
@@ -34,8 +35,17 @@ _MOST = 3000  # coordinates of a structure with a damping matrix, whose modes ar
 
 
 def build_matrices(table: MatricesTable, folder: Path, dofs: tuple[str, ...], key: str) -> Matrices | ModalModel:
-    """The component of a table; with a damping matrix in its modes. Raises ModelError for data that do not fit."""
-    file = _guarded(f"{key}.file", lambda: _matrices(table, folder))
+    """The component of a table; with a damping matrix in its modes. Raises ModelError for data that do not fit.
+
+    Built once for the same table and files: a model is changed and checked again many times in a study.
+    """
+    return _built(table.model_dump_json(exclude_unset=True), folder, dofs, key, _stamps(table, folder))
+
+
+@lru_cache(maxsize=8)
+def _built(text: str, folder: Path, dofs: tuple[str, ...], key: str, changed: Stamps) -> Matrices | ModalModel:
+    table = MatricesTable.model_validate_json(text)
+    file = _guarded(f"{key}.file", lambda: _matrices(table, folder, changed))
     ports = {name: _coordinates(port, file, dofs, f"{key}.ports.{name}") for name, port in table.ports.items()}
     scale = np.where(_turns(file, ports), 1.0, _LENGTH[table.units])
     if file.damping is not None:
@@ -44,7 +54,8 @@ def build_matrices(table: MatricesTable, folder: Path, dofs: tuple[str, ...], ke
     def si(matrix: Real | Sparse, dense: bool = file.damping is not None) -> Real | Sparse:
         return _si(matrix, scale, _ENERGY[table.units], dense)
 
-    prepared = _guarded(f"{key}.file", lambda: free_matrices(si(file.mass), si(file.stiffness)))
+    seen = [place for places in ports.values() for place in places.values()]
+    prepared = _guarded(f"{key}.file", lambda: free_matrices(si(file.mass), si(file.stiffness), seen))
     component = Matrices(
         prepared.mass,
         prepared.stiffness,
@@ -82,20 +93,28 @@ def _guarded(key: str, work: Callable[[], T]) -> T:
         raise ModelError(key, problem, remedy) from None
 
 
-def _matrices(table: MatricesTable, folder: Path) -> MatrixFile:
+def _matrices(table: MatricesTable, folder: Path, changed: Stamps) -> MatrixFile:
     path = folder / table.file
     suffix = path.suffix.lower()
     if suffix not in _MATRIX_FORMATS:
         raise InputError(f"{show(table.file)} is no file of matrices; give a .npz, .op4, .sti (CalculiX) or .mtx")
     if suffix != ".mtx" and (table.mass_file or table.damping_file):
         raise InputError(f"{show(table.file)} holds all matrices; leave mass_file and damping_file out")
-    others = [folder / name if name else None for name in (table.mass_file, table.damping_file)]
-    stamps = tuple(p.stat().st_mtime_ns if p is not None and p.is_file() else 0 for p in (path, *others))
-    return _remembered(path, others[0], others[1], stamps)
+    mass, damping = (folder / name if name else None for name in (table.mass_file, table.damping_file))
+    return _remembered(path, mass, damping, changed)
+
+
+def _stamps(table: MatricesTable, folder: Path) -> Stamps:
+    """Time and size of every file of a table, 0 where there is none; of CalculiX there are three."""
+    path = folder / table.file
+    beside = [path.with_suffix(suffix) for suffix in (".mas", ".dof")] if path.suffix.lower() == ".sti" else []
+    others = [folder / name for name in (table.mass_file, table.damping_file) if name]
+    found = [item.stat() if item.is_file() else None for item in (path, *beside, *others)]
+    return tuple((0, 0) if item is None else (item.st_mtime_ns, item.st_size) for item in found)
 
 
 @lru_cache(maxsize=8)
-def _remembered(path: Path, mass: Path | None, damping: Path | None, changed: tuple[int, ...]) -> MatrixFile:  # noqa: ARG001
+def _remembered(path: Path, mass: Path | None, damping: Path | None, changed: Stamps) -> MatrixFile:  # noqa: ARG001
     """The file, read once: a model is changed and checked again many times in a study."""
     suffix = path.suffix.lower()
     if suffix == ".mtx":

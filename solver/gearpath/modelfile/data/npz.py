@@ -25,7 +25,8 @@ def read_npz(path: Path) -> MatrixFile:
             arrays = {name: archive[name] for name in archive.files}
     except (OSError, ValueError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise unreadable(path, error) from None
-    found = {name: _matrix(path, arrays, name) for name in ("stiffness", "mass", "damping")}
+    least = _size(arrays)
+    found = {name: _matrix(path, arrays, name, least) for name in ("stiffness", "mass", "damping")}
     stiffness, mass = found["stiffness"], found["mass"]
     if stiffness is None or mass is None:
         lacking = "stiffness" if stiffness is None else "mass"
@@ -39,7 +40,15 @@ def read_npz(path: Path) -> MatrixFile:
     return MatrixFile(stiffness, mass, found["damping"], nodes, directions, _positions(path, arrays))
 
 
-def _matrix(path: Path, arrays: dict[str, np.ndarray], name: str) -> Real | Sparse | None:
+def _size(arrays: dict[str, np.ndarray]) -> int:
+    """Number of coordinates that any of the matrices reaches: the last ones may have stiffness but no mass."""
+    named = [(name, part) for name in ("stiffness", "mass", "damping") for part in ("row", "column")]
+    places = [arrays[f"{name}_{part}"] for name, part in named if f"{name}_{part}" in arrays]
+    dense = [arrays[name].shape[0] for name in ("stiffness", "mass", "damping") if name in arrays and arrays[name].ndim]
+    return max([*dense, *(int(item.max(initial=-1)) + 1 for item in places if item.dtype.kind in "iu")], default=0)
+
+
+def _matrix(path: Path, arrays: dict[str, np.ndarray], name: str, size: int) -> Real | Sparse | None:
     if name in arrays:
         if arrays[name].dtype.kind not in "iuf":
             raise InputError(f"{path.name}: {name} is not an array of numbers; save it as floats")
@@ -48,11 +57,11 @@ def _matrix(path: Path, arrays: dict[str, np.ndarray], name: str) -> Real | Spar
     if not all(key in arrays for key in keys):
         return None
     row, column, value = (arrays[key] for key in keys)
-    if row.dtype.kind not in "iu" or column.dtype.kind not in "iu" or not row.shape == column.shape == value.shape:
+    fits = row.ndim == 1 and row.shape == column.shape == value.shape and value.dtype.kind in "iuf"
+    if not fits or any(item.dtype.kind not in "iu" or item.min(initial=0) < 0 for item in (row, column)):
         raise InputError(
-            f"{path.name}: {name}_row, {name}_column and {name}_value do not fit; give one of each an entry"
+            f"{path.name}: {name}_row, {name}_column and {name}_value do not fit; give one of each an entry, from 0 on"
         )
-    size = int(max(row.max(initial=-1), column.max(initial=-1))) + 1
     return whole(scipy.sparse.coo_array((value.astype(float), (row, column)), shape=(size, size)))
 
 
