@@ -4,6 +4,7 @@ import functools
 
 import numpy as np
 import pytest
+import scipy.linalg
 import scipy.sparse
 import scipy.sparse.linalg
 
@@ -192,3 +193,43 @@ def test_ports_without_mass_bear_many_vectors():
     component = Matrices(made.mass, made.stiffness, made.rigid_modes, {"a": {"uy": 0, "rx": 1}})
     _, basis = solve_component(component, ("uy", "rx"), (("a", "a"),), (), 3000.0, 120)
     assert len(basis.eigenvalues) == 122
+
+
+def cantilever(count, free=0):
+    """K and M of a steel beam of 1 m x 20 mm in Euler elements, clamped or (free=1) free; its first frequency, Hz."""
+    E, rho, d = 2.07e11, 7850.0, 0.02
+    second, area, h = np.pi * d**4 / 64, np.pi * d**2 / 4, 1.0 / count
+    k = np.array([[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h]])
+    k = np.vstack([k, [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]) * E * second / h**3
+    m = np.array([[156, 22 * h, 54, -13 * h], [22 * h, 4 * h * h, 13 * h, -3 * h * h]])
+    m = np.vstack([m, [54, 13 * h, 156, -22 * h], [-13 * h, -3 * h * h, -22 * h, 4 * h * h]]) * rho * area * h / 420
+    n = 2 * (count + 1)
+    K, M = np.zeros((n, n)), np.zeros((n, n))
+    for e in range(count):
+        part = slice(2 * e, 2 * e + 4)
+        K[part, part] += k
+        M[part, part] += m
+    kept = slice(2 * (1 - free), None)
+    return K[kept, kept], M[kept, kept], 3.5160 / (2 * np.pi) * np.sqrt(E * second / (rho * area))
+
+
+def few_digits(K, digits):
+    return printed(scipy.sparse.csc_array(K), digits).toarray()
+
+
+def test_rounding_that_hides_a_soft_motion_asks_for_the_number():
+    """A slender beam resists its first bending less than the entries are rounded: held or free is the user's word."""
+    K, M, first = cantilever(100)
+    rounded = few_digits(K, 9)
+    with pytest.raises(InputError, match=r"do not tell whether 1 motions of up to 14 Hz are rigid; give their number"):
+        free_matrices(M, rounded)
+    held = free_matrices(M, rounded, rigid=0)
+    lowest = scipy.linalg.eigh(held.stiffness, held.mass, eigvals_only=True)[0]
+    assert np.sqrt(lowest) / (2 * np.pi) == pytest.approx(first, rel=1e-3)
+    K, M, _ = cantilever(80, free=1)
+    with pytest.raises(InputError, match="do not tell whether 3 motions"):
+        free_matrices(M, few_digits(K, 7))
+    made = free_matrices(M, few_digits(K, 7), rigid=2)
+    assert made.rigid_modes.shape[1] == 2
+    with pytest.raises(InputError, match="rigid_motions: the stiffness resists all but 2 motions"):
+        free_matrices(M, K, rigid=3)

@@ -14,6 +14,7 @@ from .rigid_motions import rigid_motions, rounding_of
 _SYMMETRIC = 1e-6  # largest skew part, of the largest entry; files print as few as seven digits
 _MASSLESS = 1e-12  # eigenvalue of the mass matrix, of the largest
 _ROUNDED = 1e-13  # part of an entry: more leaves rigid motions of sparse matrices a resistance that cannot be taken out
+_STILL = (2.0 * np.pi * 0.1) ** 2  # (rad/s)^2: what rounding hides below 0.1 Hz is rigid without a question
 _STATIC = (2.0 * np.pi * 3e6) ** 2  # w_z^2, (rad/s)^2
 _FAR = 100.0 * _STATIC  # the same of sparse coordinates, whose mass moves with the rest as well
 
@@ -27,10 +28,13 @@ class FreeMatrices:
     rigid_modes: Real  # R (n, r)
 
 
-def free_matrices(mass: Real | Sparse, stiffness: Real | Sparse, ports: Sequence[int] = ()) -> FreeMatrices:
+def free_matrices(
+    mass: Real | Sparse, stiffness: Real | Sparse, ports: Sequence[int] = (), rigid: int | None = None
+) -> FreeMatrices:
     """Checks and prepares the matrices (n, n) of a structure, free or held, dense or sparse.
 
-    `ports` are the coordinates that forces act on. Motions Z without mass follow the others statically, Z^T K q = 0.
+    `rigid` is the number of motions that nothing resists, where the digits of the stiffness cannot tell. `ports` are
+    the coordinates that forces act on. Motions Z without mass follow the others statically, Z^T K q = 0.
     What a force on them moves beside that gets the mass K Z (Z^T K Z)^-1 Z^T K / w_z^2: nothing in all motions without
     such a force, and 3e-6 of the compliance at 5 kHz is missing with w_z = 3 MHz. In sparse matrices only coordinates
     of ports get some, K_jj / (10 w_z)^2: the others follow in all vectors of the reduction.
@@ -45,7 +49,7 @@ def free_matrices(mass: Real | Sparse, stiffness: Real | Sparse, ports: Sequence
     if scipy.sparse.issparse(K) or scipy.sparse.issparse(M):
         K, M = scipy.sparse.csc_array(K), scipy.sparse.csc_array(M)
         M = _with_mass_at_ports(M, K, ports)
-        R = _rigid_modes(K, M)
+        R = _rigid_modes(K, M, rigid)
         if R.shape[1] and rounding_of(K) > _ROUNDED:
             raise InputError(
                 f"stiffness: its digits are too few to reduce a free structure of {len(R)} coordinates; export it with "
@@ -58,7 +62,7 @@ def free_matrices(mass: Real | Sparse, stiffness: Real | Sparse, ports: Sequence
     idle = values <= _MASSLESS * values[-1]
     if idle.any():
         M = M + _little(K, vectors[:, idle])
-    R = _rigid_modes(K, M)
+    R = _rigid_modes(K, M, rigid)
     if R.shape[1]:
         P = np.eye(len(M)) - R @ (R.T @ M)  # R is M-orthonormal: takes out what printed digits leave of resistance
         K = _symmetric(P.T @ K @ P)
@@ -109,13 +113,26 @@ def _with_mass_at_ports(M: Sparse, K: Sparse, ports: Sequence[int]) -> Sparse:
     return scipy.sparse.csc_array(M + scipy.sparse.diags_array(np.where(idle & at, stiff / _FAR, 0.0)))
 
 
-def _rigid_modes(K: Real | Sparse, M: Real | Sparse) -> Real:
-    """The rigid motions of K, M-orthonormal, (n, r). Raises InputError for one that has no mass."""
+def _rigid_modes(K: Real | Sparse, M: Real | Sparse, given: int | None) -> Real:
+    """The rigid motions of K, M-orthonormal, (n, r): those below its rounding, or the `given` softest of them.
+
+    Raises InputError for a motion that has no mass, where rounding hides motions at frequencies that a structure may
+    well have, and for a given number that the stiffness contradicts.
+    """
     R = rigid_motions(K)
+    if R.shape[1] < (given or 0):
+        raise InputError(f"rigid_motions: the stiffness resists all but {R.shape[1]} motions; give this number")
     if not R.shape[1]:
         return R
     G = R.T @ (M @ R)
     scale = np.sqrt(np.maximum(np.diag(G), np.finfo(float).tiny))
     if np.linalg.eigvalsh(G / np.outer(scale, scale))[0] < _MASSLESS:
         raise InputError("mass: there is none in some motion that no stiffness resists; take those coordinates out")
-    return np.asarray(R @ scipy.linalg.inv(scipy.linalg.cholesky(G)))
+    values, turn = scipy.linalg.eigh(_symmetric(R.T @ (K @ R)), G)
+    if given is None and abs(values).max() > _STILL:
+        raise InputError(
+            f"stiffness: its digits do not tell whether {len(values)} motions of up to "
+            f"{np.sqrt(abs(values).max()) / (2.0 * np.pi):.2g} Hz are rigid; give their number as rigid_motions "
+            "(6 of a free body, 0 of a held one), or export it with more digits"
+        )
+    return np.asarray(R @ turn[:, : len(values) if given is None else given])

@@ -55,7 +55,9 @@ def _built(text: str, folder: Path, dofs: tuple[str, ...], key: str, changed: St
         return _si(matrix, scale, _ENERGY[table.units], dense)
 
     seen = [place for places in ports.values() for place in places.values()]
-    prepared = _guarded(f"{key}.file", lambda: free_matrices(si(file.mass), si(file.stiffness), seen))
+    prepared = _guarded(
+        f"{key}.file", lambda: free_matrices(si(file.mass), si(file.stiffness), seen, table.rigid_motions)
+    )
     component = Matrices(
         prepared.mass,
         prepared.stiffness,

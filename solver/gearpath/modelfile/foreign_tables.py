@@ -113,6 +113,9 @@ class MatricesTable(Table):
     mass_file: Annotated[str, Text("file of the mass matrix, where it has one of its own (.mtx)", "mass.mtx")] = ""
     damping_file: Annotated[str, Text("file of a viscous damping matrix (.mtx)", "damping.mtx")] = ""
     units: Annotated[str, Choice("system of units of the file", UNITS)] = "SI"
+    rigid_motions: Annotated[
+        int | None, Count("number of motions that nothing resists (left out: as the stiffness tells)", 0, 48)
+    ] = None
     modal_damping: Annotated[float, _DAMPING] = 0.0
     loss_factor: Annotated[float, _LOSS] = 0.0
     vectors: Annotated[
