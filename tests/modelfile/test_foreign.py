@@ -120,6 +120,15 @@ def test_coordinates_without_mass_follow_statically(tmp_path):
     assert found_mobility(middle) == pytest.approx(full, rel=1e-6)
 
 
+def test_a_mass_that_is_zero_but_for_printed_digits(tmp_path):
+    """-1e-7 of the largest, as seven digits leave it: no mass, and no broken factorisation."""
+    K = np.array([[2e7, -1e7], [-1e7, 1e7]])
+    np.savez(tmp_path / "body.npz", stiffness=K, mass=np.diag([-1e-7, 1.0]))
+    model = small_machine({"kind": "matrices", "file": "body.npz", "ports": PORTS}, tmp_path)
+    exact = mobility(K + HELD, np.diag([0.0, 1.0]), DAMPER, model.frequencies())
+    assert found_mobility(model) == pytest.approx(exact, rel=1e-5)
+
+
 @pytest.mark.parametrize("sparse", [False, True])
 def test_millimetres_and_tonnes(tmp_path, sparse):
     """A cantilever of one element, Euler, in both systems of units: translations and rotations."""

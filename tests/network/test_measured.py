@@ -243,3 +243,15 @@ def test_the_mean_load_goes_through_the_fit():
         system = replace(system, joints=joints, operation=Operation("gear_train", 50.0))
         loads.append(np.array([state.load for state in operating_point(system).values()]))
     np.testing.assert_allclose(loads[1], loads[0], atol=2e-3 * abs(loads[0]).max())
+
+
+def test_the_state_space_has_the_states_of_the_fit():
+    """Three rigid motions stand for twelve channels."""
+    control = pytest.importorskip("control")
+    from gearpath.statespace import state_space
+
+    network = network_of(with_measured_casing(default_gearbox(), LINES))
+    plant = state_space(network)
+    assert isinstance(plant, control.StateSpace)
+    assert plant.nstates == 2 * len(network.viscous().eigenvalues)
+    assert plant.nstates < 2 * len(network.eigenvalues)

@@ -178,6 +178,11 @@ def test_joints_that_do_not_fit(small, arguments, words):
         small.with_joint(*arguments)
 
 
+def test_without_ports_nothing_can_be_taken_out():
+    A = np.array([[-1.0]])
+    assert is_positive_real(A, np.zeros((1, 0)), np.zeros((0, 1)), np.zeros((0, 0)))
+
+
 def test_a_free_machine_cannot_be_balanced():
     with pytest.raises(gp.InputError, match="every motion dies away"):
         gp.reduce(gp.load(MODELS / "helical_gearbox.toml"), order=40, method="balanced")

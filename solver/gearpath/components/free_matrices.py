@@ -59,9 +59,9 @@ def free_matrices(
     values, vectors = scipy.linalg.eigh(M)
     if not values[-1] > 0.0 or values[0] < -_SYMMETRIC * values[-1]:
         raise InputError(f"mass: its lowest eigenvalue {values[0]:.3g} is negative or all are 0; give a mass matrix")
-    idle = values <= _MASSLESS * values[-1]
+    idle = values <= max(_MASSLESS * values[-1], -2.0 * values[0])  # what printed digits leave of 0 has either sign
     if idle.any():
-        M = M + _little(K, vectors[:, idle])
+        M = _symmetric((vectors[:, ~idle] * values[~idle]) @ vectors[:, ~idle].T) + _little(K, vectors[:, idle])
     R = _rigid_modes(K, M, rigid)
     if R.shape[1]:
         P = np.eye(len(M)) - R @ (R.T @ M)  # R is M-orthonormal: takes out what printed digits leave of resistance

@@ -27,6 +27,7 @@ def state_space(network: ModalNetwork) -> control.StateSpace:
         import control
     except ImportError as error:
         raise MissingExtraError("python-control", "control") from error
+    network = network.viscous()  # what can be simulated: its modes name the states
     twin = time_twin(network)
     modes = [
         f"{name}/mode_{k + 1}" for name, block in network.components.items() for k in range(block.stop - block.start)

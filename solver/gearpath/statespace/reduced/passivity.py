@@ -39,8 +39,11 @@ def _semidefinite(matrix: Real) -> bool:
 def is_positive_real(A: Real, B: Real, C: Real, D: Real) -> bool:
     """Whether G(s) = C (s I - A)^-1 B + D is positive real, up to 1e-7 of its largest gain.
 
-    The ports of G are pairs of a force and the velocity of its own place; rows and columns in the same order.
+    The ports of G are pairs of a force and the velocity of its own place; rows and columns in the same order. Without
+    ports nothing can be taken out.
     """
+    if not len(D):
+        return True
     poles = scipy.linalg.eigvals(A)
     if (poles.real > _ROUNDING * abs(poles).max(initial=0.0)).any():
         return False
