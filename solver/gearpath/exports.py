@@ -94,6 +94,8 @@ def to_frd(
         return build(frequency_response(model, frequencies_hz, outputs, inputs), smooth=smooth)
     if not (frequencies_hz is None and outputs is None and inputs is None):
         raise InputError("to_frd: a response has its frequencies, outputs and inputs; select from it with .sel instead")
+    if not hasattr(model, "coords"):
+        raise InputError(f"to_frd: {type(model).__name__} is neither a model nor a response; give one of the two")
     return build(model, smooth=smooth)
 
 

@@ -247,8 +247,15 @@ def test_data_that_are_not_reciprocal_are_named():
         ({"frf": np.zeros((20, 1, 1))}, "no driving point responds"),
         ({"frequencies_hz": [1.0, 2.0], "frf": [1.0, 1.0]}, "too few"),
         ({"quantity": "impedance"}, "there is no 'impedance'"),
-        ({"modes": 0}, "give at least 1"),
+        ({"modes": 0}, "give a whole number from 1 up"),
+        ({"modes": 2.5}, "2.5 is not a number of modes"),
+        ({"modes": True}, "True is not a number of modes"),
         ({"tolerance": 0.0}, "above 0 and below 1"),
+        ({"tolerance": "a"}, "tolerance 'a' is not allowed"),
+        (
+            {"frf": np.tile([[1.0, 0.5], [0.5, 0.0]], (20, 1, 1))},
+            "channel 1 answers to others and not to its own force",
+        ),
         ({"frf": "text"}, "not numbers"),
     ],
 )

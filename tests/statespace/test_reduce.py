@@ -171,6 +171,9 @@ def test_requests_that_do_not_fit(model, request_, words):
         (("bearing_1", np.eye(3)), r"shape \(3, 3\) does not fit"),
         (("bearing_1", [[1.0, 2.0], [3.0, 4.0]]), "is not symmetric"),
         (("bearing_1", [[np.nan, 0.0], [0.0, 1.0]]), "not finite"),
+        (("bearing_1", "abc"), "is no matrix of real numbers"),
+        (("bearing_1", [[1.0], [2.0, 3.0]]), "is no matrix of real numbers"),
+        (("bearing_1", 1j * np.eye(2)), "is no matrix of real numbers"),
     ],
 )
 def test_joints_that_do_not_fit(small, arguments, words):

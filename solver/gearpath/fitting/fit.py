@@ -91,10 +91,16 @@ def _checked(frequencies_hz: ArrayLike, frf: ArrayLike, modes: int | None, toler
         raise InputError("fit_mobility: FRFs have entries that are not finite; leave such lines out")
     if not np.einsum("faa->fa", H).any():
         raise InputError("fit_mobility: no driving point responds; give the matrix of FRFs, force and response alike")
-    if modes is not None and modes < 1:
-        raise InputError(f"fit_mobility: {modes} modes are not a number of modes; give at least 1")
-    if not 0.0 < tolerance < 1.0:
-        raise InputError(f"fit_mobility: tolerance {tolerance:g} is not allowed; give a number above 0 and below 1")
+    dead = ~np.einsum("faa->fa", H).any(axis=0) & (H.any(axis=(0, 1)) | H.any(axis=(0, 2)))
+    if dead.any():
+        raise InputError(
+            f"fit_mobility: channel {int(np.argmax(dead))} answers to others and not to its own force, as nothing "
+            "passive does; measure its driving point"
+        )
+    if modes is not None and (isinstance(modes, bool) or not isinstance(modes, (int, np.integer)) or modes < 1):
+        raise InputError(f"fit_mobility: {modes!r} is not a number of modes; give a whole number from 1 up")
+    if not (isinstance(tolerance, (int, float, np.floating)) and 0.0 < tolerance < 1.0):
+        raise InputError(f"fit_mobility: tolerance {tolerance!r} is not allowed; give a number above 0 and below 1")
     return f, H
 
 

@@ -1,8 +1,8 @@
 """Mobility of single modes on scaled lines, and how it changes with their frequencies and damping ratios.
 
-    b(x) = i x / D,    D = x_r^2 - x^2 + 2 i zeta_r x_r x                     x_r = 0 is a rigid-body mode
-    db / d ln x_r   = -i x (2 x_r^2 + 2 i zeta_r x_r x) / D^2
-    db / d ln zeta_r = -i x (2 i zeta_r x_r x) / D^2
+b(x) = i x / D,    D = x_r^2 - x^2 + 2 i zeta_r x_r x                     x_r = 0 is a rigid-body mode
+db / d ln x_r   = -i x (2 x_r^2 + 2 i zeta_r x_r x) / D^2
+db / d ln zeta_r = -i x (2 i zeta_r x_r x) / D^2
 """
 
 import numpy as np

@@ -135,7 +135,13 @@ def _matrix(key: str, value: Any, current: Real) -> Real:
     """A symmetric matrix of the joint's size; `current` where none is given. Raises InputError."""
     if value is None:
         return current
-    matrix = np.atleast_2d(np.asarray(value, float))
+    try:
+        given = np.asarray(value)
+        matrix = np.atleast_2d(given.astype(float)) if given.dtype.kind in "iuf" else None
+    except (TypeError, ValueError):
+        matrix = None
+    if matrix is None:
+        raise InputError(f"{key}: is no matrix of real numbers; give {current.shape[0]} rows of as many numbers")
     if matrix.shape != current.shape:
         raise InputError(f"{key}: shape {matrix.shape} does not fit; give {current.shape}")
     if not np.isfinite(matrix).all() or abs(matrix - matrix.T).max() > 1e-12 * abs(matrix).max():

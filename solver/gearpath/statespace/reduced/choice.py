@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from numbers import Real as Number
 from typing import Protocol
 
 import numpy as np
@@ -54,7 +55,7 @@ def check_request(
         raise InputError("order, tolerance: give one of the two, order=40 or tolerance=1e-3")
     if order is not None and (isinstance(order, bool) or not isinstance(order, (int, np.integer)) or order < 1):
         raise InputError(f"order: {order!r} is not a number of coordinates; give a whole number from 1 up")
-    if tolerance is not None and not (isinstance(tolerance, (int, float)) and 0.0 < tolerance < 1.0):
+    if tolerance is not None and not (isinstance(tolerance, Number) and 0.0 < tolerance < 1.0):
         raise InputError(f"tolerance: {tolerance!r} is not a relative error; give a number between 0 and 1")
     low, high = band
     if not 0.0 < low < high < np.inf:
