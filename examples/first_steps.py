@@ -1,6 +1,6 @@
 """First steps: exchange a bearing, close a loop with python-control, simulate the FMU with fmpy.
 
-    python examples/first_steps.py
+python examples/first_steps.py
 """
 
 import tempfile

@@ -1,6 +1,6 @@
 """Fig. 11 to 15 together: the same shift across and along the shafts.
 
-    python examples/paper/asymmetry.py
+python examples/paper/asymmetry.py
 """
 
 from gearpath.study.paper import asymmetry

@@ -1,6 +1,6 @@
 """Sec. 4: static completeness of the source's basis.
 
-    python examples/paper/completeness.py
+python examples/paper/completeness.py
 """
 
 from gearpath.study.paper import completeness

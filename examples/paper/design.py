@@ -1,6 +1,6 @@
 """Sec. 7: the design criteria as computed tables.
 
-    python examples/paper/design.py
+python examples/paper/design.py
 """
 
 from gearpath.study.paper import design

@@ -1,6 +1,6 @@
 """Fig. 5: the synthesis against the direct solution, complete and after a Guyan reduction.
 
-    python examples/paper/fig05.py
+python examples/paper/fig05.py
 """
 
 from gearpath.study.paper import fig05

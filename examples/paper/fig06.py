@@ -1,6 +1,6 @@
 """Fig. 6: the experimental set-up, its input mobility and the paths of its upper joint.
 
-    python examples/paper/fig06.py
+python examples/paper/fig06.py
 """
 
 from gearpath.study.paper import fig06

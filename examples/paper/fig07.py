@@ -1,6 +1,6 @@
 """Fig. 7: Timoshenko, Euler and Mindlin elements for the shafts.
 
-    python examples/paper/fig07.py
+python examples/paper/fig07.py
 """
 
 from gearpath.study.paper import fig07

@@ -1,6 +1,6 @@
 """Fig. 8: bearings with full, diagonal and radial stiffness.
 
-    python examples/paper/fig08.py
+python examples/paper/fig08.py
 """
 
 from gearpath.study.paper import fig08

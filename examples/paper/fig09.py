@@ -1,6 +1,6 @@
 """Fig. 9: damping and stiffness of the bearings.
 
-    python examples/paper/fig09.py
+python examples/paper/fig09.py
 """
 
 from gearpath.study.paper import fig09

@@ -1,6 +1,6 @@
 """Fig. 11: the centre of gravity shifted along the shafts.
 
-    python examples/paper/fig11.py
+python examples/paper/fig11.py
 """
 
 from gearpath.study.paper import fig11

@@ -1,6 +1,6 @@
 """Fig. 12: the centre of gravity shifted across the shafts.
 
-    python examples/paper/fig12.py
+python examples/paper/fig12.py
 """
 
 from gearpath.study.paper import fig12

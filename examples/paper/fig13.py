@@ -1,6 +1,6 @@
 """Fig. 13: the gear mesh shifted along the shafts.
 
-    python examples/paper/fig13.py
+python examples/paper/fig13.py
 """
 
 from gearpath.study.paper import fig13

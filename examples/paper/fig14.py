@@ -1,6 +1,6 @@
 """Fig. 14: the mounts shifted along the shafts.
 
-    python examples/paper/fig14.py
+python examples/paper/fig14.py
 """
 
 from gearpath.study.paper import fig14

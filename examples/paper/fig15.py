@@ -1,6 +1,6 @@
 """Fig. 15: the mounts shifted across the shafts.
 
-    python examples/paper/fig15.py
+python examples/paper/fig15.py
 """
 
 from gearpath.study.paper import fig15

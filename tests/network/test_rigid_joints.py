@@ -154,9 +154,7 @@ def frame_bars(factors, *, whole=False):
 
 def test_frames_of_one_loss_factor_are_one_frame():
     joined, whole = (assemble(frame_bars((0.05, 0.05), whole=one)) for one in (False, True))
-    outputs = [
-        frequency_response(n.modal(), LINES, n.modal().outputs[:6], n.modal().loads) for n in (joined, whole)
-    ]
+    outputs = [frequency_response(n.modal(), LINES, n.modal().outputs[:6], n.modal().loads) for n in (joined, whole)]
     np.testing.assert_allclose(outputs[0], outputs[1], rtol=1e-6, atol=1e-6 * abs(outputs[1]).max())
     direct = [reference_solution(network, LINES).force for network in (joined, whole)]
     np.testing.assert_allclose(direct[0], direct[1], rtol=1e-9, atol=1e-9 * abs(direct[1]).max())

@@ -160,9 +160,7 @@ class Synthesis:
         viscous += elastic
         return viscous
 
-    def _free_motion(
-        self, response: Complex, tables: Sequence[Complex], omega: Real
-    ) -> tuple[Complex, Complex | None]:
+    def _free_motion(self, response: Complex, tables: Sequence[Complex], omega: Real) -> tuple[Complex, Complex | None]:
         """Modal velocities of the uncoupled components under each load; and i w d e of transmission errors."""
         free = np.empty((len(response), len(self.loads), len(omega)), complex)
         own = None
