@@ -4,7 +4,7 @@ import ctypes
 from pathlib import Path
 
 import pytest
-from conformance_mutants import FORCE, OUTPUT, OUTPUTS, RATES, ROOT
+from conformance_faults import FORCE, OUTPUT, OUTPUTS, RATES, ROOT
 from conformance_trees import attributes, edited, exchange, key_of, one, pack, without
 from lxml import etree
 
