@@ -97,13 +97,6 @@ def test_a_damping_matrix_that_the_modes_diagonalise(tmp_path):
     assert list(H) == pytest.approx(list(exact), rel=1e-8)
 
 
-def test_a_damping_matrix_that_couples_modes_is_refused(tmp_path):
-    K, M, _ = beam_pair()
-    np.savez(tmp_path / "body.npz", stiffness=K + np.diag([1e6, 0]), mass=M, damping=np.diag([30.0, 0.0]))
-    with pytest.raises(gp.ModelError, match=r"components\.body\.file: its damping matrix couples modes by \d+ %"):
-        small_machine({"kind": "matrices", "file": "body.npz", "ports": PORTS}, tmp_path)
-
-
 def test_coordinates_without_mass_follow_statically(tmp_path):
     """Two masses, a massless point in the middle of their spring; a force on it too meets its own compliance."""
     K, M, _ = beam_pair()

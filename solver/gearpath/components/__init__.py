@@ -1,6 +1,7 @@
 """Structures known by what they do at named ports: shaft trains, rigid bodies, plates, frames, measured ones."""
 
 from .cross_section import BarSection
+from .dashpots import split_damping
 from .dofs import DOFS, ROTATIONS, TRANSLATIONS
 from .footprint import Footprint
 from .frame import Frame
@@ -42,4 +43,5 @@ __all__ = [
     "Structure",
     "modal_model",
     "modes",
+    "split_damping",
 ]

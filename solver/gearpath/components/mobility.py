@@ -60,10 +60,11 @@ def modal_damping_matrix(structure: Structure) -> Real:
     """C = M Phi diag(2 zeta w_r) Phi^T M: the damping ratio zeta in every elastic mode, none in rigid-body motion.
 
     It satisfies C M^-1 C = 4 zeta^2 K, which defines it without any modes. Modes that are the coordinates themselves
-    may have a ratio each.
+    may have a ratio each, and dashpots between them.
     """
     if structure.damping_ratios is not None:
-        return np.diag(2.0 * structure.damping_ratios * np.sqrt(np.diag(structure.stiffness)))
+        C = np.diag(2.0 * structure.damping_ratios * np.sqrt(np.diag(structure.stiffness)))
+        return C if structure.dashpots is None else C + structure.dashpots.T @ structure.dashpots
     basis = modes(structure)
     momentum = structure.mass @ basis.shapes
     return np.asarray((momentum * (2.0 * structure.modal_damping * np.sqrt(basis.eigenvalues))) @ momentum.T)

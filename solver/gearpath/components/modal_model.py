@@ -17,9 +17,10 @@ from .structure import Structure
 
 @dataclass(frozen=True)
 class ModalModel:
-    """q'' + diag(2 zeta w) q' + (1 + i eta) diag(w^2) q = Phi^T f at the ports; plain tuples, so that `repr` builds it.
+    """q'' + (diag(2 zeta w) + D^T D) q' + (1 + i eta) diag(w^2) q = Phi^T f at the ports.
 
-    Modes that it leaves out are missing: their static response too. Equal to any other of the same numbers.
+    Modes that it leaves out are missing: their static response too. Equal to any other of the same numbers. Plain
+    tuples, so that `repr` builds it.
     """
 
     eigenvalues: tuple[float, ...]  # w^2, (rad/s)^2, ascending; 0 for rigid-body modes, which come first
@@ -27,10 +28,12 @@ class ModalModel:
     ports: Mapping[str, Mapping[str, tuple[float, ...]]]  # port -> degree of freedom -> its mass-normalised shape
     places: Mapping[str, Vector] = field(default_factory=dict)  # m, of ports whose place is known
     loss_factor: float = 0.0
+    dashpots: tuple[tuple[float, ...], ...] = ()  # rows of D: viscous damping that couples the modes
 
     def __hash__(self) -> int:
         shapes = tuple((name, *dofs.items()) for name, dofs in self.ports.items())
-        return hash((self.eigenvalues, self.damping_ratios, shapes, *self.places.items(), self.loss_factor))
+        damping = (self.damping_ratios, self.loss_factor, self.dashpots)
+        return hash((self.eigenvalues, damping, shapes, *self.places.items()))
 
     def position(self, port: str) -> Vector | None:
         """Place of a port, m; None where it is not known."""
@@ -45,12 +48,15 @@ class ModalModel:
     ) -> Structure:
         """Unit mass, diagonal stiffness, and the rows of each of ports and probes, which name ports.
 
-        `modal_damping` is the mean ratio of the elastic modes, `damping_ratios` those of all modes.
+        `modal_damping` is the mean ratio of the elastic modes, or the least of them where stiff modes that are damped
+        beyond critical make the mean so; `damping_ratios` are those of all modes.
         """
         L = np.array(self.eigenvalues)
         elastic = L > 0.0
         ratios = np.where(elastic, self.damping_ratios, 0.0)
         mean = float(ratios[elastic].mean()) if elastic.any() else 0.0
+        if mean >= 1.0:
+            mean = float(ratios[ratios > 0.0].min())
         rows = {key: named_rows(self.ports, port, dofs, len(L)) for key, port in {**ports, **(probes or {})}.items()}
         return Structure(
             mass=np.eye(len(L)),
@@ -60,6 +66,7 @@ class ModalModel:
             ports=rows,
             loss_factor=self.loss_factor,
             damping_ratios=ratios,
+            dashpots=np.array(self.dashpots) if self.dashpots else None,
         )
 
 
@@ -69,9 +76,10 @@ def modal_model(
     ports: Mapping[str, Real],
     places: Mapping[str, Vector],
     loss_factor: float,
+    dashpots: Real | None = None,
 ) -> ModalModel:
     """The modes of a structure, shapes (n, N), as they are seen by the rows (6, n) of its ports; those without motion
-    are left out of a port.
+    are left out of a port. `dashpots` (k, N) act on the modes.
     """
     seen = {name: np.asarray(rows @ basis.shapes) for name, rows in ports.items()}
     return ModalModel(
@@ -80,6 +88,7 @@ def modal_model(
         {name: {dof: tuple(row.tolist()) for dof, row in zip(DOFS, rows) if row.any()} for name, rows in seen.items()},
         dict(places),
         loss_factor,
+        () if dashpots is None else tuple(tuple(row) for row in dashpots.tolist()),
     )
 
 

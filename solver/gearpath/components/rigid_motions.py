@@ -39,6 +39,8 @@ def rigid_motions(stiffness: Real | Sparse) -> Real:
     scaled, precision = _scaled(stiffness, scale), rounding_of(stiffness)
     values, vectors = _softest(scaled, max(_SHIFT, 10.0 * precision))
     limit = precision * np.einsum("ik,ik->k", abs(vectors), np.asarray(abs(scaled) @ abs(vectors)))
+    soft = values < 10.0 * _CLEAR * limit
+    values[soft] = _resistance(stiffness, scale[:, None] * vectors[:, soft])
     if (values < -_CLEAR * limit).any():
         raise InputError(
             f"stiffness: is negative in some motion (eigenvalue {values.min():.2g} with a unit diagonal); "
@@ -54,6 +56,12 @@ def rigid_motions(stiffness: Real | Sparse) -> Real:
     if rigid.all() and len(values) < int(stiffness.shape[0]):
         raise InputError(f"stiffness: {len(values)} motions or more do not deform it; connect its parts")
     return np.asarray(scale[:, None] * vectors[:, rigid])
+
+
+def _resistance(K: Real | Sparse, motions: Real) -> Real:
+    """v^T K v of each motion, (k,), without the rounding of the eigensolver, which may exceed that of the entries."""
+    V = motions.astype(np.longdouble)
+    return np.asarray((V * np.asarray(K @ V)).sum(axis=0), dtype=float)
 
 
 def rounding_of(matrix: Real | Sparse) -> float:

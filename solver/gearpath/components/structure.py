@@ -10,7 +10,8 @@ from ..numerics.arrays import Real, Sparse
 class Structure:
     """A linear structure in n generalised coordinates q: M q'' + C q' + (1 + i eta) K q = f.
 
-    C is modal: each elastic free-free mode has the damping ratio `modal_damping`. eta is `loss_factor`.
+    C is modal: each elastic free-free mode has the damping ratio `modal_damping`, and D^T D of `dashpots` beside.
+    eta is `loss_factor`.
     """
 
     mass: Real | Sparse  # (n, n), symmetric positive definite
@@ -21,6 +22,7 @@ class Structure:
     meshes: Mapping[str, "MeshMotion"] = field(default_factory=dict)
     loss_factor: float = 0.0
     damping_ratios: Real | None = None  # (n,), where the coordinates are the modes themselves, each with its own
+    dashpots: Real | None = None  # D (k, n), likewise: what couples the modes
 
     @property
     def size(self) -> int:

@@ -11,6 +11,7 @@ from ..components.dofs import is_rotation
 from ..errors import InputError
 from ..network.coupled_modes import CoupledModes, coupled_modes
 from ..network.modal import ModalNetwork
+from ..network.records import JointRows
 from ..network.time_twin import state_scale
 from ..numerics.arrays import Real
 from .native_table import state_nominals
@@ -31,7 +32,7 @@ def payload(network: ModalNetwork, variables: Sequence[Variable], frequency: flo
     reals = _reals(network, frequency)
     check_finite(reals)
     modes = coupled_modes(network)
-    names, text = named_text([joint.name for joint in network.joints] + [variable.name for variable in variables])
+    names, text = named_text([joint.name for joint in _joints(network)] + [variable.name for variable in variables])
     counts = _counts(network, len(variables), len(text), modes is not None)
     parts = [struct.pack("<16I", *counts)]
     form = [*_modal_form(modes), *_tones(network), *_schedule(network)]
@@ -44,6 +45,17 @@ def payload(network: ModalNetwork, variables: Sequence[Variable], frequency: flo
     return b"".join(padded(part) for part in [*parts, text])
 
 
+def _joints(network: ModalNetwork) -> tuple[JointRows, ...]:
+    """The joints, and behind them the dashpots inside components: joints to nowhere of one degree of freedom each."""
+    one = np.ones((1, 1))
+    inside = [
+        JointRows(f"{name}.dashpot_{k + 1}", "dashpot", ("ux",), row[None], 0.0 * row[None], 0.0 * one, one)
+        for name, D in network.dashpots.items()
+        for k, row in enumerate(D)
+    ]
+    return (*network.joints, *inside)
+
+
 def check_finite(arrays: Sequence[Real]) -> None:
     """Refuse numbers that are not finite."""
     if not all(np.isfinite(array).all() for array in arrays):
@@ -52,7 +64,7 @@ def check_finite(arrays: Sequence[Real]) -> None:
 
 def _counts(network: ModalNetwork, variables: int, text: int, has_modes: bool) -> tuple[int, ...]:
     N, loads = len(network.eigenvalues), [load.name for load in network.loads]
-    sizes = [len(joint.dofs) for joint in network.joints]
+    sizes = [len(joint.dofs) for joint in _joints(network)]
     small = (N, len(network.modal_damping), len(sizes), sum(sizes))
     if max(*small, len(loads), len(network.outputs)) > LARGEST_COUNT:
         raise InputError(f"the network is too large for an FMU (at most {LARGEST_COUNT} modes, joints or outputs)")
@@ -91,10 +103,10 @@ def _reals(network: ModalNetwork, frequency: float) -> list[Real]:
         state_nominals(network),
         np.array(list(network.modal_damping.values())),
         np.array([network.damping_share(name) for name in network.modal_damping]).reshape(-1, N),
-        np.vstack([joint.source for joint in network.joints]),
-        np.vstack([joint.receiver for joint in network.joints]),
-        np.concatenate([_symmetric(joint.stiffness).ravel() for joint in network.joints]),
-        np.concatenate([_symmetric(joint.damping).ravel() for joint in network.joints]),
+        np.vstack([joint.source for joint in _joints(network)]),
+        np.vstack([joint.receiver for joint in _joints(network)]),
+        np.concatenate([_symmetric(joint.stiffness).ravel() for joint in _joints(network)]),
+        np.concatenate([_symmetric(joint.damping).ravel() for joint in _joints(network)]),
         np.vstack([load.column for load in network.loads]),
         np.vstack([zero if load.mesh_displacement is None else load.mesh_displacement for load in network.loads]),
         np.vstack([zero if output.row is None else output.row for output in network.outputs] or [np.zeros((0, N))]),
@@ -124,7 +136,7 @@ def _schedule(network: ModalNetwork) -> list[Real]:
                 _symmetric(matrices[joint.name][i]).ravel()
                 if joint.name in matrices
                 else np.zeros(len(joint.dofs) ** 2)
-                for joint in network.joints
+                for joint in _joints(network)
             ]
             for i in range(len(schedule.torques))
         ]
@@ -141,15 +153,15 @@ def _follows(network: ModalNetwork, name: str) -> int:
 
 def _indices(network: ModalNetwork, variables: Sequence[Variable], names: Sequence[int]) -> list[ArrayLike]:
     """The index sections behind the kinds of mode pairs."""
-    sizes = [len(joint.dofs) for joint in network.joints]
+    sizes = [len(joint.dofs) for joint in _joints(network)]
     starts, block_starts = np.cumsum([0, *sizes]), np.cumsum([0, *(size**2 for size in sizes)])
-    joints = [joint.name for joint in network.joints]
+    joints = [joint.name for joint in _joints(network)]
     return [
         [load.is_transmission_error for load in network.loads],
-        [is_rotation(dof) for joint in network.joints for dof in joint.dofs],
+        [is_rotation(dof) for joint in _joints(network) for dof in joint.dofs],
         [
             (starts[j], sizes[j], block_starts[j], joint.name in network.paths, names[j], _follows(network, joint.name))
-            for j, joint in enumerate(network.joints)
+            for j, joint in enumerate(_joints(network))
         ],
         [
             (

@@ -147,6 +147,9 @@ class Dependencies:
             if (terms & self.elastic).any():
                 found.inputs.add(load.name)
             found.parameters |= {name for name, mask in self.groups.items() if (terms & mask).any()}
+        for D in self.network.dashpots.values():  # what they couple, they couple always
+            for row in D[(D[:, modes] != 0).any(axis=1)]:
+                self._rates(found, row != 0)
         for joint in self.network.joints:
             for dof in np.flatnonzero((self.acts[joint.name] & modes).any(axis=1)):
                 self._force(found, joint, int(dof))

@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 import scipy.sparse
 
-from ..components import DOFS, Matrices, ModalModel, modal_model, modes
+from ..components import DOFS, Matrices, ModalModel, modal_model, modes, split_damping
 from ..components.dofs import is_rotation
 from ..components.free_matrices import checked, free_matrices
 from ..errors import InputError, ModelError
@@ -29,7 +29,6 @@ _MATRIX_FORMATS = (".npz", ".op4", ".sti", ".mtx")
 _MODE_FORMATS = {".npz": read_modes_npz, ".unv": read_modes_uff, ".uff": read_modes_uff}
 _LENGTH = {"SI": 1.0, "mm-t-s": 1e-3}  # m
 _ENERGY = {"SI": 1.0, "mm-t-s": 1e-3}  # J: N mm, and t mm^2 / s^2
-_MIXED = 1e-6  # largest coupling of modes by a damping matrix, of the geometric mean of their own damping
 _DENSE = 600  # coordinates up to which all modes of a sparse structure are kept
 _MOST = 3000  # coordinates of a structure with a damping matrix, whose modes are all computed
 
@@ -202,21 +201,13 @@ def _places(table: MatricesTable, file: MatrixFile) -> dict[str, tuple[float, fl
 
 
 def _damped(component: Matrices, damping: Real, key: str) -> ModalModel:
-    """The component in its modes, which its damping matrix must not couple."""
+    """The component in its modes, with the damping ratio of each and dashpots for what couples them."""
     structure = component.structure(DOFS, {name: name for name in component.ports})
     basis = modes(structure)
-    C = basis.shapes.T @ damping @ basis.shapes
-    own, largest = np.diag(C), float(abs(C).max(initial=0.0))
-    if (own < -_MIXED * largest).any():
-        raise ModelError(f"{key}.file", "its damping matrix feeds energy in", "give a positive semidefinite one")
-    elastic = basis.eigenvalues > 0.0
-    size = np.sqrt(np.maximum(own, 1e-9 * largest))
-    mixed = float((abs(C - np.diag(own)) / np.outer(size, size)).max(initial=0.0)) if largest else 0.0
-    if mixed > _MIXED or (own[~elastic] > _MIXED * largest).any():
-        what = f"couples modes by {100 * mixed:.3g} % of their own" if mixed > _MIXED else "resists rigid motion"
-        raise ModelError(f"{key}.file", f"its damping matrix {what}", "give modal_damping or loss_factor instead")
-    ratios = np.divide(np.maximum(own, 0.0), 2.0 * np.sqrt(basis.eigenvalues), out=np.zeros_like(own), where=elastic)
-    return modal_model(basis, ratios, structure.ports, component.places, component.loss_factor)
+    found = _guarded(f"{key}.file", lambda: split_damping(basis.shapes.T @ damping @ basis.shapes, basis.eigenvalues))
+    w = np.sqrt(basis.eigenvalues)
+    ratios = np.divide(found.own, 2.0 * w, out=np.zeros_like(w), where=w > 0.0)
+    return modal_model(basis, ratios, structure.ports, component.places, component.loss_factor, found.dashpots)
 
 
 def build_modal(table: ModalTable, folder: Path, key: str) -> ModalModel:

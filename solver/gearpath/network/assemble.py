@@ -88,6 +88,17 @@ def _shares(network: Network, slices: Mapping[str, slice]) -> dict[str, Real]:
     return shares
 
 
+def _dashpots(network: Network, basis: Mapping[str, Modes], slices: Mapping[str, slice]) -> dict[str, Real]:
+    """D of the components that have dashpots, on all modes."""
+    size = max((block.stop for block in slices.values()), default=0)
+    found = {}
+    for name, structure in network.structures.items():
+        if structure.dashpots is not None:
+            found[name] = np.zeros((len(structure.dashpots), size))
+            found[name][:, slices[name]] = structure.dashpots @ basis[name].shapes
+    return found
+
+
 def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
     """Project the network on a basis of mass-normalised modes of each component (Eq. 11)."""
     shapes = scipy.linalg.block_diag(*(basis[name].shapes for name in network.structures))
@@ -125,6 +136,7 @@ def to_modes(network: Network, basis: Mapping[str, Modes]) -> ModalNetwork:
         paths=network.paths,
         loss_factors={name: s.loss_factor for name, s in network.structures.items() if s.loss_factor},
         damping_shares=_shares(network, slices),
+        dashpots=_dashpots(network, basis, slices),
         measured={n: item for n, item in network.system.components.items() if isinstance(item, Measured)},
         band=network.band,
         loss_frequency=network.system.loss_frequency,

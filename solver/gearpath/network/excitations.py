@@ -78,6 +78,7 @@ def _input(network: ModalNetwork, loads: Sequence[Load], solved: Response, w: Re
 def _dissipated(network: ModalNetwork, loads: Sequence[Load], solved: Response, w: Real) -> Complex:
     """Q_d (e, F, n, n)."""
     damping, joints = element_damping(network, w)
+    slip, inside = real_times_complex(network.relative, solved.velocity), network.dashpot_slices()
     out = []
     for name, modes in network.components.items():
         V = solved.elastic[modes]
@@ -86,7 +87,8 @@ def _dissipated(network: ModalNetwork, loads: Sequence[Load], solved: Response, 
             out.append((product + product.conj().swapaxes(-1, -2)) / 2.0)
             continue
         out.append(np.einsum("rjf,rf,rkf->fjk", V.conj(), damping[modes], V, optimize=True))
-    slip = real_times_complex(network.relative, solved.velocity)
+        if name in inside:
+            out[-1] += np.einsum("rjf,rkf->fjk", slip[inside[name]].conj(), slip[inside[name]])
     for at, (C, K_lost) in zip(network.joint_slices().values(), joints):
         dv = slip[at]
         drag = real_times_complex(C, dv) + real_times_complex(K_lost, dv) / w

@@ -3,10 +3,6 @@
 With A q = 0 the rows of the rigid joints on the modal coordinates q of the components, q = T x where A T = 0 and
 T^T T = 1, T^T diag(L) T = diag(mu): rigid motions of the joined body first, mu exactly 0, its modes after them.
 
-Each mode takes of a component's damping ratio and loss factor its part of the strain energy (composite damping),
-
-    rho'_cr = sum_k rho_ck L_k T_kr^2 / mu_r,    zeta_r = sum_c zeta_c rho'_cr,    eta_r = sum_c eta_c rho'_cr.
-
 The motion d of a transmission error e pushes with L d e. Where the joints resist d itself (A d != 0), d' takes its
 place with the same force on the joined body, diag(mu) d' = T^T L d; otherwise d' = T^T d, which is the same.
 """
@@ -22,6 +18,7 @@ from ..components.modes import sharpen
 from ..errors import AccuracyError, InputError
 from ..numerics.arrays import Real
 from ..numerics.subspaces import null_space, unit_rows
+from .joined_damping import joined_damping
 from .modal import ModalNetwork
 from .records import Load, Output
 from .rigid import Group, RigidRows, groups
@@ -45,14 +42,16 @@ def joined(network: ModalNetwork, held: Sequence[RigidRows]) -> ModalNetwork:
     parts = [_modes(network, group) for group in found]
     T, mu = np.hstack([shapes for shapes, _ in parts]), np.concatenate([squares for _, squares in parts])
     ends = np.cumsum([shapes.shape[1] for shapes, _ in parts])
-    together = {name for group in found if group.joints for name in group.components}
+    blocks = {
+        group.name: slice(int(end) - len(squares), int(end)) for group, (_, squares), end in zip(found, parts, ends)
+    }
+    shares, dashpots = joined_damping(network, found, T, blocks, mu)
     out = replace(
         network,
-        components={
-            group.name: slice(int(end) - len(squares), int(end)) for group, (_, squares), end in zip(found, parts, ends)
-        },
+        components=blocks,
         eigenvalues=mu,
-        damping_shares=_shares(network, T, mu, together),
+        damping_shares=shares,
+        dashpots=dashpots,
         joints=tuple(replace(j, source=j.source @ T, receiver=j.receiver @ T) for j in network.joints),
         loads=tuple(_load(network, load, held, T, mu) for load in network.loads),
         outputs=tuple(replace(o, row=None if o.row is None else o.row @ T) for o in network.outputs),
@@ -108,16 +107,6 @@ def _held_modes(L: Real, A: Real) -> tuple[Real, Real]:
         raise AccuracyError("rigid joints connect parts of so different stiffness that their modes drown in rounding")
     order = np.argsort(mu)
     return np.hstack([R, shapes[:, order]]), np.concatenate([np.zeros(R.shape[1]), mu[order]])
-
-
-def _shares(network: ModalNetwork, T: Real, mu: Real, together: set[str]) -> dict[str, Real]:
-    """rho' of every damping ratio and loss factor whose component moves with others, or had shares of its own."""
-    out = {}
-    for name in dict.fromkeys([*network.modal_damping, *network.loss_factors]):
-        if name in together or name in network.damping_shares:
-            energy = (network.damping_share(name) * network.eigenvalues) @ T**2
-            out[name] = np.divide(energy, mu, out=np.zeros_like(mu), where=mu > 0.0)
-    return out
 
 
 def _load(network: ModalNetwork, load: Load, held: Sequence[RigidRows], T: Real, mu: Real) -> Load:

@@ -16,6 +16,8 @@ class ModalNetwork:
     """All components in their own free-free modes, N in all, mass-normalised, and the joints between them.
 
     Uncoupled: q'' + X q' + (1 + i eta) L q = f with L = diag(eigenvalues), X = diag(2 zeta sqrt(L)) (Eq. 11b, 11c).
+    Dashpots inside a component couple its modes: X + D^T D. To the synthesis they are joints to nowhere, which stand
+    behind the joints in the stacked interface. No transmission error moves them, D d = 0.
     """
 
     name: str
@@ -34,6 +36,7 @@ class ModalNetwork:
     source: MeshSource | None = None  # of FMUs only: everything else takes the excitation as an input
     schedule: Schedule | None = None  # of FMUs only: everything else takes the joints as they are
     damping_shares: Mapping[str, Real] = field(default_factory=dict)  # component -> rho (N,), where not 1 on its modes
+    dashpots: Mapping[str, Real] = field(default_factory=dict)  # component -> D (k, N), (N s/m)^0.5 ...
     decided: frozenset[str] = frozenset()  # of FMUs only: matrices, as bearing_1.stiffness, that their design decides
 
     def damping_share(self, name: str) -> Real:
@@ -110,25 +113,36 @@ class ModalNetwork:
 
     @property
     def relative(self) -> Real:
-        """P = B Phi, (n_p, N): relative motion of every joint degree of freedom, stacked."""
-        return np.vstack([joint.relative for joint in self.joints])
+        """P = B Phi, (n_p, N): relative motion of every joint degree of freedom, stacked; then the dashpots' D."""
+        return np.vstack([*(joint.relative for joint in self.joints), *self.dashpots.values()])
 
     def joint_slices(self) -> dict[str, slice]:
         """Where each joint's degrees of freedom stand in the stacked interface."""
         ends = np.cumsum([len(joint.dofs) for joint in self.joints])
         return {j.name: slice(int(end) - len(j.dofs), int(end)) for j, end in zip(self.joints, ends)}
 
+    def dashpot_slices(self) -> dict[str, slice]:
+        """Where the dashpots inside each component stand in the stacked interface."""
+        start = sum(len(joint.dofs) for joint in self.joints)
+        ends = start + np.cumsum([len(D) for D in self.dashpots.values()])
+        return {name: slice(int(end) - len(D), int(end)) for (name, D), end in zip(self.dashpots.items(), ends)}
+
     def interface_matrices(self) -> tuple[Real, Real]:
-        """Block-diagonal K and C of all joints, (n_p, n_p) each."""
-        size = sum(len(joint.dofs) for joint in self.joints)
+        """Block-diagonal K and C of all joints and dashpots, (n_p, n_p) each."""
+        size = len(self.relative)
         K, C = np.zeros((size, size)), np.zeros((size, size))
         for joint, rows in zip(self.joints, self.joint_slices().values()):
             K[rows, rows], C[rows, rows] = joint.stiffness, joint.damping
+        for rows in self.dashpot_slices().values():
+            C[rows, rows] = np.eye(rows.stop - rows.start)
         return K, C
 
     def joint_losses(self) -> Real:
         """Loss factor of every interface row, (n_p,)."""
-        return np.concatenate([np.full(len(joint.dofs), joint.loss_factor) for joint in self.joints])
+        losses = np.zeros(len(self.relative))
+        for joint, rows in zip(self.joints, self.joint_slices().values()):
+            losses[rows] = joint.loss_factor
+        return losses
 
     def with_joint(self, name: str, stiffness: Real, damping: Real) -> "ModalNetwork":
         """The same network with one joint exchanged; the components stay solved."""

@@ -122,7 +122,8 @@ def _dissipation(network: ModalNetwork, load: Load, solved: Response, slip: Comp
     for name in network.measured:
         block = network.components[name]
         lost[block] = 0.5 * (port_forces(network, [load], solved.force, block)[:, 0].conj() * elastic[block]).real
-    rows = [lost[modes].sum(axis=0) for modes in network.components.values()]
+    inside = {name: 0.5 * (abs(slip[at]) ** 2).sum(axis=0) for name, at in network.dashpot_slices().items()}
+    rows = [lost[modes].sum(axis=0) + inside.get(name, 0.0) for name, modes in network.components.items()]
     for at, (C, K_lost) in zip(network.joint_slices().values(), joints):
         drag = real_times_complex(C, slip[at])
         if K_lost.any():

@@ -85,7 +85,8 @@ def components(network: ModalNetwork) -> str:
         squares = network.eigenvalues[block]
         elastic = np.sqrt(squares[squares > 0]) / (2.0 * np.pi)
         span = f"{number(elastic.min(), 5)} to {number(elastic.max(), 5)}" if elastic.size else "none"
-        ratios = network.damping[block][squares > 0] / (4.0 * np.pi * elastic)
+        own = network.damping + sum((D**2).sum(axis=0) for D in network.dashpots.values())
+        ratios = own[block][squares > 0] / (4.0 * np.pi * elastic)
         ends = dict.fromkeys(number(float(end)) for end in (ratios.min(), ratios.max())) if elastic.size else ("none",)
         rows.append((escape(name), str(int((squares == 0).sum())), str(elastic.size), span, " to ".join(ends)))
     head = ("Component", "Rigid motions", "Elastic modes", "Natural frequencies, free, Hz", "Damping ratio")

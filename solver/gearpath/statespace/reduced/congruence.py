@@ -58,6 +58,7 @@ def congruent(network: ModalNetwork, bases: Mapping[str, Basis]) -> ModalNetwork
         },
         eigenvalues=mu,
         damping_shares={name: _shares(network, name, bases) for name in network.modal_damping},
+        dashpots={name: D @ V for name, D in network.dashpots.items()},
         joints=tuple(replace(j, source=j.source @ V, receiver=j.receiver @ V) for j in network.joints),
         loads=tuple(load(item) for item in network.loads),
         outputs=tuple(replace(o, row=None if o.row is None else o.row @ V) for o in network.outputs),
