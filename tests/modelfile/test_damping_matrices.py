@@ -117,14 +117,23 @@ def test_digits_of_a_printed_rayleigh_matrix_are_no_dashpots(tmp_path):
     assert machine(tmp_path, K, M, C).system.components["body"].dashpots == ()
 
 
-def test_rigid_joints_keep_the_matrices(tmp_path):
+@pytest.mark.parametrize(("eta", "zeta"), [((0.0, 0.0), None), ((0.03, 0.1), None), ((0.1, 0.0), 0.0)])
+def test_rigid_joints_keep_the_matrices(tmp_path, eta, zeta):
     """Two structures welded at a mass of each, and one of them to the ground: against their assembled matrices."""
     K, M, C, _ = CASES["Rayleigh and two"]
     data = machine(tmp_path, K, M, C).to_dict()
     other, extra, drag, _ = CASES["one"]
-    np.savez(tmp_path / "other.npz", stiffness=other, mass=extra, damping=drag)
+    if zeta is not None:
+        drag = zeta * drag
+    np.savez(tmp_path / "other.npz", stiffness=other, mass=extra, **({"damping": drag} if drag.any() else {}))
     data["components"]["body"]["ports"] |= {"held": [4], "end": [3]}
-    data["components"]["other"] = {"kind": "matrices", "file": "other.npz", "ports": {"end": [0]}}
+    data["components"]["other"] = {
+        "kind": "matrices",
+        "file": "other.npz",
+        "ports": {"end": [0]},
+        "loss_factor": eta[1],
+    }
+    data["components"]["body"]["loss_factor"] = eta[0]
     data["joints"]["weld"] = {"kind": "rigid", "between": ["body.end", "other.end"]}
     data["joints"]["clamp"] = {"kind": "rigid", "between": ["body.held", "ground"]}
     welded = gp.Model.from_dict(data, str(tmp_path / "model.toml"))
@@ -133,13 +142,20 @@ def test_rigid_joints_keep_the_matrices(tmp_path):
     T[kept, range(N - 1)] = 1.0
     T[N, 3] = 1.0
     T[range(N + 1, 2 * N), range(N - 1, 2 * N - 2)] = 1.0
+    H = T.T @ scipy.linalg.block_diag(eta[0] * K, eta[1] * other) @ T
     K, M, C = (T.T @ scipy.linalg.block_diag(a, b) @ T for a, b in ((K, other), (M, extra), (C, drag)))
     K[N - 2, N - 2] += HELD
     C[N - 2, N - 2] += DAMPER
     w = 2 * np.pi * welded.frequencies()
-    exact = np.array([1j * x * np.linalg.solve(K - x**2 * M + 1j * x * C, np.eye(2 * N - 2)[1])[N - 2] for x in w])
+    dynamic = [K + 1j * H - x**2 * M + 1j * x * C for x in w]
+    exact = np.array([1j * x * np.linalg.solve(D, np.eye(2 * N - 2)[1])[N - 2] for x, D in zip(w, dynamic)])
     found = gp.frequency_response(welded).sel(output="sensors.b", input="excitation.force").values
     assert abs(found - exact).max() < 1e-9 * abs(exact).max()
+    power = gp.power_flow(welded)
+    assert power.dissipated_power.sum("element").values == pytest.approx(power.input_power.values, rel=1e-9)
+    matrices = gp.power_matrices(welded).dissipated_power.sum("element").values.real.ravel()
+    assert matrices == pytest.approx(power.input_power.values, rel=1e-9)
+    assert reference_solution(assemble(welded.system), w).input_power == pytest.approx(power.input_power, rel=1e-8)
 
 
 def test_the_direct_solution_agrees(tmp_path):

@@ -2,6 +2,7 @@
 
 import warnings
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -186,3 +187,11 @@ def test_state_space_names_the_joined_body():
     plant = gp.state_space(type(model).from_dict(data))
     assert isinstance(plant, control.StateSpace)
     assert "casing+frame/mode_1/x" in plant.state_labels
+
+
+def test_bearings_inside_a_joined_body_are_no_paths_and_a_warning_says_so():
+    data = gp.load(Path(__file__).parents[2] / "models" / "gearbox.toml").to_dict()
+    data["joints"]["bearing_1"] = {"kind": "rigid", "between": data["joints"]["bearing_1"]["between"]}
+    with pytest.warns(UserWarning, match=r"joints\.bearing_1: holds gear_train and casing .* bearing_2, bearing_3"):
+        flow = gp.power_flow(gp.Model.from_dict(data), [100.0])
+    assert flow.sizes["path"] == 0

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import warnings
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -74,7 +75,24 @@ def assemble(system: System) -> Network:
     excitation, loads = load_columns(ports, system)
     outputs = output_rows(ports, system, joints)
     rigid = rigid_rows(ports, system)
+    _warn_of_lost_paths(system, rigid)
     return Network(system, ports.structures, ports.bases, ports.blocks, joints, loads, outputs, excitation, rigid)
+
+
+def _warn_of_lost_paths(system: System, rigid: Sequence[RigidRows]) -> None:
+    """Bearings within components that a rigid joint makes one are no paths: no one who ranks them should miss that."""
+    for group in groups(rigid, system.components):
+        lost = [
+            name
+            for name, joint in system.joints.items()
+            if joint.kind in _PATHS and {port.component for port in joint.between} <= set(group.components)
+        ]
+        if group.joints and lost:
+            warnings.warn(
+                f"joints.{group.joints[0]}: holds {' and '.join(group.components)} rigidly together, so that "
+                f"{', '.join(lost)} inside are no power flow paths; make it a stiff bearing to see all paths",
+                stacklevel=3,
+            )
 
 
 def _shares(network: Network, slices: Mapping[str, slice]) -> dict[str, Real]:

@@ -20,7 +20,7 @@ from ..numerics.arrays import Complex, Real
 from ..numerics.lines import chunks, real_times_complex
 from .measured import port_forces
 from .modal import ModalNetwork
-from .power import element_damping, path_rows
+from .power import element_damping, inner_damping, path_rows
 from .records import Load
 from .synthesis import Response, Synthesis
 
@@ -78,7 +78,7 @@ def _input(network: ModalNetwork, loads: Sequence[Load], solved: Response, w: Re
 def _dissipated(network: ModalNetwork, loads: Sequence[Load], solved: Response, w: Real) -> Complex:
     """Q_d (e, F, n, n)."""
     damping, joints = element_damping(network, w)
-    slip, inside = real_times_complex(network.relative, solved.velocity), network.dashpot_slices()
+    slip = real_times_complex(network.relative, solved.velocity)
     out = []
     for name, modes in network.components.items():
         V = solved.elastic[modes]
@@ -87,8 +87,9 @@ def _dissipated(network: ModalNetwork, loads: Sequence[Load], solved: Response, 
             out.append((product + product.conj().swapaxes(-1, -2)) / 2.0)
             continue
         out.append(np.einsum("rjf,rf,rkf->fjk", V.conj(), damping[modes], V, optimize=True))
-        if name in inside:
-            out[-1] += np.einsum("rjf,rkf->fjk", slip[inside[name]].conj(), slip[inside[name]])
+        for places, weight in inner_damping(network, w):
+            dv = slip[places.get(name, slice(0, 0))]
+            out[-1] += np.einsum("rjf,f,rkf->fjk", dv.conj(), weight, dv)
     for at, (C, K_lost) in zip(network.joint_slices().values(), joints):
         dv = slip[at]
         drag = real_times_complex(C, dv) + real_times_complex(K_lost, dv) / w

@@ -19,6 +19,7 @@ from ..errors import AccuracyError, InputError
 from ..numerics.arrays import Real
 from ..numerics.subspaces import null_space, unit_rows
 from .joined_damping import joined_damping
+from .joined_losses import joined_losses
 from .modal import ModalNetwork
 from .records import Load, Output
 from .rigid import Group, RigidRows, groups
@@ -46,12 +47,15 @@ def joined(network: ModalNetwork, held: Sequence[RigidRows]) -> ModalNetwork:
         group.name: slice(int(end) - len(squares), int(end)) for group, (_, squares), end in zip(found, parts, ends)
     }
     shares, dashpots = joined_damping(network, found, T, blocks, mu)
+    loss_shares, losses = joined_losses(network, found, T, mu)
     out = replace(
         network,
         components=blocks,
         eigenvalues=mu,
         damping_shares=shares,
         dashpots=dashpots,
+        loss_shares=loss_shares,
+        joined_losses=losses,
         joints=tuple(replace(j, source=j.source @ T, receiver=j.receiver @ T) for j in network.joints),
         loads=tuple(_load(network, load, held, T, mu) for load in network.loads),
         outputs=tuple(replace(o, row=None if o.row is None else o.row @ T) for o in network.outputs),

@@ -103,6 +103,7 @@ def fitted(network: ModalNetwork) -> ModalNetwork:
         components=blocks,
         modal_damping=ratios,
         damping_shares=shares,
+        loss_shares={name: share @ T for name, share in network.loss_shares.items()},
         dashpots={name: D @ T for name, D in network.dashpots.items()},
         eigenvalues=np.concatenate(
             [fits[n].eigenvalues if n in fits else network.eigenvalues[network.components[n]] for n in parts]

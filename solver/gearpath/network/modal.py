@@ -12,6 +12,14 @@ from .records import JointRows, Load, MeshSource, Output, Schedule
 
 
 @dataclass(frozen=True)
+class JoinedLosses:
+    """i eta K of components of different loss factors that move as one: i (eta L + E^T E) on the joined modes."""
+
+    loss_factor: float  # the least of them, eta
+    rows: Real  # E (k, N), (rad/s)
+
+
+@dataclass(frozen=True)
 class ModalNetwork:
     """All components in their own free-free modes, N in all, mass-normalised, and the joints between them.
 
@@ -36,34 +44,45 @@ class ModalNetwork:
     source: MeshSource | None = None  # of FMUs only: everything else takes the excitation as an input
     schedule: Schedule | None = None  # of FMUs only: everything else takes the joints as they are
     damping_shares: Mapping[str, Real] = field(default_factory=dict)  # component -> rho (N,), where not 1 on its modes
+    loss_shares: Mapping[str, Real] = field(default_factory=dict)  # the same of loss factors
     dashpots: Mapping[str, Real] = field(default_factory=dict)  # component -> D (k, N), (N s/m)^0.5 ...
+    joined_losses: Mapping[str, JoinedLosses] = field(default_factory=dict)  # group -> what replaces shares of eta
     decided: frozenset[str] = frozenset()  # of FMUs only: matrices, as bearing_1.stiffness, that their design decides
 
     def damping_share(self, name: str) -> Real:
-        """rho (N,): the part of a component's damping ratio and loss factor that each mode takes.
+        """rho (N,): the part of a component's damping ratio that each mode takes.
 
         1 on the component's own modes, unless they have ratios of their own (then relative to the component's) or
         are those of several components that move as one.
         """
-        if name in self.damping_shares:
-            return self.damping_shares[name]
+        return self.damping_shares[name] if name in self.damping_shares else self._own(name)
+
+    def loss_share(self, name: str) -> Real:
+        """rho (N,): the part of a component's loss factor that each mode takes; 1 on its own modes."""
+        return self.loss_shares[name] if name in self.loss_shares else self._own(name)
+
+    def _own(self, name: str) -> Real:
         share = np.zeros_like(self.eigenvalues)
         share[self.components[name]] = 1.0
         return share
 
-    def _shared(self, values: Mapping[str, float]) -> Real:
-        """sum_c value_c rho_c, (N,)."""
-        return np.asarray(sum((v * self.damping_share(n) for n, v in values.items()), np.zeros_like(self.eigenvalues)))
-
     @property
     def damping(self) -> Real:
         """Diagonal of X, 2 sqrt(L) sum_c zeta_c rho_c, (N,), rad/s."""
-        return 2.0 * self._shared(self.modal_damping) * np.sqrt(self.eigenvalues)
+        ratios = np.zeros_like(self.eigenvalues)
+        for name, zeta in self.modal_damping.items():
+            ratios += zeta * self.damping_share(name)
+        return np.asarray(2.0 * ratios * np.sqrt(self.eigenvalues))
 
     @property
     def hysteresis(self) -> Real:
         """eta L of every mode, L sum_c eta_c rho_c, (N,), (rad/s)^2: what loss factors add, imaginary."""
-        return self._shared(self.loss_factors) * self.eigenvalues
+        factors = np.zeros_like(self.eigenvalues)
+        for name, eta in self.loss_factors.items():
+            factors += eta * self.loss_share(name)
+        for name, losses in self.joined_losses.items():
+            factors[self.components[name]] = losses.loss_factor
+        return factors * self.eigenvalues
 
     @property
     def has_loss_factors(self) -> bool:
@@ -83,11 +102,23 @@ class ModalNetwork:
             return self
         w = 2.0 * np.pi * self.loss_frequency
         ratios = {name: zeta + self.loss_factors.get(name, 0.0) / 2.0 for name, zeta in self.modal_damping.items()}
+        shares = dict(self.damping_shares)
+        for name in {*self.damping_shares, *self.loss_shares} & set(self.loss_factors) & set(ratios):
+            zeta, eta = self.modal_damping[name], self.loss_factors[name]
+            mixed = zeta * self.damping_share(name) + eta / 2.0 * self.loss_share(name)
+            shares[name] = np.asarray(mixed / ratios[name])
         joints = tuple(
             replace(j, damping=j.damping + j.loss_factor / w * j.stiffness, loss_factor=0.0) for j in self.joints
         )
         return replace(
-            self, modal_damping=ratios, joints=joints, loss_factors={}, schedule=self._viscous_schedule(1.0 / w)
+            self,
+            modal_damping=ratios,
+            joints=joints,
+            damping_shares=shares,
+            loss_factors={},
+            loss_shares={},
+            joined_losses={},
+            schedule=self._viscous_schedule(1.0 / w),
         )
 
     def _viscous_schedule(self, time: float) -> Schedule | None:
@@ -113,8 +144,9 @@ class ModalNetwork:
 
     @property
     def relative(self) -> Real:
-        """P = B Phi, (n_p, N): relative motion of every joint degree of freedom, stacked; then the dashpots' D."""
-        return np.vstack([*(joint.relative for joint in self.joints), *self.dashpots.values()])
+        """P = B Phi, (n_p, N): relative motion of every joint degree of freedom; then D of dashpots, E of losses."""
+        losses = [item.rows for item in self.joined_losses.values()]
+        return np.vstack([*(joint.relative for joint in self.joints), *self.dashpots.values(), *losses])
 
     def joint_slices(self) -> dict[str, slice]:
         """Where each joint's degrees of freedom stand in the stacked interface."""
@@ -123,9 +155,19 @@ class ModalNetwork:
 
     def dashpot_slices(self) -> dict[str, slice]:
         """Where the dashpots inside each component stand in the stacked interface."""
-        start = sum(len(joint.dofs) for joint in self.joints)
-        ends = start + np.cumsum([len(D) for D in self.dashpots.values()])
-        return {name: slice(int(end) - len(D), int(end)) for (name, D), end in zip(self.dashpots.items(), ends)}
+        return _following(sum(len(joint.dofs) for joint in self.joints), self.dashpots)
+
+    def loss_slices(self) -> dict[str, slice]:
+        """Where the losses of joined components stand in the stacked interface, behind everything else."""
+        start = sum(len(joint.dofs) for joint in self.joints) + sum(map(len, self.dashpots.values()))
+        return _following(start, {name: losses.rows for name, losses in self.joined_losses.items()})
+
+    def interface_hysteresis(self) -> Real:
+        """H of every interface row, (n_p,), whose force is H / w of its velocity: 1 of losses, 0 of others."""
+        found = np.zeros(len(self.relative))
+        for rows in self.loss_slices().values():
+            found[rows] = 1.0
+        return found
 
     def interface_matrices(self) -> tuple[Real, Real]:
         """Block-diagonal K and C of all joints and dashpots, (n_p, n_p) each."""
@@ -148,3 +190,9 @@ class ModalNetwork:
         """The same network with one joint exchanged; the components stay solved."""
         joints = tuple(replace(j, stiffness=stiffness, damping=damping) if j.name == name else j for j in self.joints)
         return replace(self, joints=joints)
+
+
+def _following(start: int, rows: Mapping[str, Real]) -> dict[str, slice]:
+    """Where rows stand that follow each other from `start`."""
+    ends = start + np.cumsum([len(item) for item in rows.values()])
+    return {name: slice(int(end) - len(item), int(end)) for (name, item), end in zip(rows.items(), ends)}

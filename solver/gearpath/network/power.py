@@ -122,14 +122,22 @@ def _dissipation(network: ModalNetwork, load: Load, solved: Response, slip: Comp
     for name in network.measured:
         block = network.components[name]
         lost[block] = 0.5 * (port_forces(network, [load], solved.force, block)[:, 0].conj() * elastic[block]).real
-    inside = {name: 0.5 * (abs(slip[at]) ** 2).sum(axis=0) for name, at in network.dashpot_slices().items()}
-    rows = [lost[modes].sum(axis=0) + inside.get(name, 0.0) for name, modes in network.components.items()]
+    rows = [lost[modes].sum(axis=0) for modes in network.components.values()]
+    for places, weight in inner_damping(network, omega):
+        for k, name in enumerate(network.components):
+            if name in places:
+                rows[k] += 0.5 * (abs(slip[places[name]]) ** 2).sum(axis=0) * weight
     for at, (C, K_lost) in zip(network.joint_slices().values(), joints):
         drag = real_times_complex(C, slip[at])
         if K_lost.any():
             drag += real_times_complex(K_lost, slip[at]) / omega
         rows.append(0.5 * (slip[at].real * drag.real + slip[at].imag * drag.imag).sum(axis=0))
     return np.array(rows)
+
+
+def inner_damping(network: ModalNetwork, omega: Real) -> list[tuple[dict[str, slice], Real]]:
+    """Interface rows inside components, and what they dissipate at unit velocity, (F,): 1 of D, 1 / w of losses E."""
+    return [(network.dashpot_slices(), np.ones_like(omega)), (network.loss_slices(), 1.0 / omega)]
 
 
 def element_damping(network: ModalNetwork, omega: Real) -> tuple[Real, list[tuple[Real, Real]]]:

@@ -1,8 +1,8 @@
 """The structures of the reference solution in physical coordinates, those that rigid joints hold together as one.
 
 Rows A q = 0 of rigid joints give some coordinates by the others, q = N y (QR with column pivoting), so that a joined
-structure has the matrices N^T M N and N^T K N. Its damping is that of its own modes: each takes of a component's
-damping ratio and loss factor that component's part of the strain energy.
+structure has the matrices N^T M N and N^T K N, and N^T (eta K) N and N^T C N of loss factors and damping matrices. A
+damping ratio, and beside gears everything, is composite: each mode takes the part of the strain energy in a component.
 """
 
 from __future__ import annotations
@@ -96,13 +96,27 @@ def _joined(network: Network, group: Group) -> Part:
     R = R @ scipy.linalg.null_space(A @ R, rcond=_RANK)
     joined = Structure(N.T @ M @ N, N.T @ K @ N, R[free], 0.0, {})
     place_of = scipy.sparse.eye_array(group.rows.shape[1], format="csc")[:, place]
+    gears = any(d[place].any() for d in (load.mesh_displacement for load in network.loads) if d is not None)
     if any(issparse(s.mass) for s in own):
-        H = _one_loss_factor(own) * joined.stiffness
-        return Part(joined, 0.0 * joined.mass, H, place_of @ N, group.rows, place[free])
+        _check_sparse(own, gears)
+        return Part(joined, 0.0 * joined.mass, _losses(own, N), place_of @ N, group.rows, place[free])
     joined = replace(joined, mass=joined.mass.toarray(), stiffness=joined.stiffness.toarray())  # type: ignore[union-attr]
     basis = modes(joined)
-    C, H = _composite(own, np.asarray(N @ basis.shapes), joined.mass @ basis.shapes, basis.eigenvalues)
+    C, H = _composite(own, np.asarray(N @ basis.shapes), joined.mass @ basis.shapes, basis.eigenvalues, gears)
+    if not gears:
+        C, H = C + _matrices(own, N), _losses(own, N).toarray()
     return Part(joined, C, H, place_of @ N, group.rows, place[free], basis)
+
+
+def _losses(own: Sequence[Structure], N: Any) -> Any:
+    """N^T diag(eta_c K_c) N, sparse."""
+    return N.T @ scipy.sparse.block_diag([s.loss_factor * s.stiffness for s in own], format="csc") @ N
+
+
+def _matrices(own: Sequence[Structure], N: Any) -> Real:
+    """N^T C N of the components whose damping is a matrix of its own."""
+    blocks = [0.0 * s.mass if s.damping_ratios is None else damping_matrix(s) for s in own]
+    return np.asarray((N.T @ scipy.sparse.block_diag(blocks, format="csc") @ N).toarray())
 
 
 def _independent(A: Real) -> tuple[Any, NDArray[np.intp]]:
@@ -122,24 +136,34 @@ def _independent(A: Real) -> tuple[Any, NDArray[np.intp]]:
     return scipy.sparse.csc_array(N), free
 
 
-def _one_loss_factor(own: Sequence[Structure]) -> float:
+def _check_sparse(own: Sequence[Structure], gears: bool) -> None:
     elastic = [s for s in own if s.size > s.rigid_modes.shape[1]]
-    factors = {s.loss_factor for s in elastic}
-    if len(factors) > 1 or any(s.modal_damping for s in elastic):
+    if (gears and len({s.loss_factor for s in elastic}) > 1) or any(s.modal_damping for s in elastic):
         raise AccuracyError(
             "the damping of plates and frames in rigid joints has no matrix, for not all of their modes are known, "
-            "unless all parts have one loss_factor and no modal damping; give them that"
+            "where it is modal damping, or where loss factors differ and gears are among them; give all one loss_factor"
         )
-    return factors.pop() if factors else 0.0
 
 
-def _composite(own: Sequence[Structure], shapes: Real, momentum: Real, eigenvalues: Real) -> tuple[Real, Real]:
-    """C and eta K of the joined structure, from the strain energy of each component in each of its modes."""
+def _composite(
+    own: Sequence[Structure], shapes: Real, momentum: Real, eigenvalues: Real, gears: bool
+) -> tuple[Real, Real]:
+    """C and eta K of the joined structure, from the strain energy of each component in each of its modes.
+
+    Ratios of single modes are among them beside gears only: otherwise `_matrices` has them.
+    """
     ratios, factors, start = np.zeros_like(eigenvalues), np.zeros_like(eigenvalues), 0
     for s in own:
         part = shapes[start : start + s.size]
-        energy = np.einsum("ir,ir->r", part, s.stiffness @ part)
-        share = np.divide(energy, eigenvalues, out=np.zeros_like(energy), where=eigenvalues > 0.0)
-        ratios, factors, start = ratios + s.modal_damping * share, factors + s.loss_factor * share, start + s.size
+        stored = s.stiffness @ part
+        zeta = s.modal_damping
+        if s.damping_ratios is not None:
+            zeta, stored_ratio = 1.0, (s.damping_ratios if gears else 0.0 * s.damping_ratios)[:, None] * stored
+        else:
+            stored_ratio = stored
+        for target, factor, force in ((ratios, zeta, stored_ratio), (factors, s.loss_factor, stored)):
+            energy = np.einsum("ir,ir->r", part, force)
+            target += factor * np.divide(energy, eigenvalues, out=np.zeros_like(energy), where=eigenvalues > 0.0)
+        start += s.size
     damping = 2.0 * ratios * np.sqrt(eigenvalues)
     return momentum * damping @ momentum.T, momentum * (factors * eigenvalues) @ momentum.T

@@ -71,9 +71,11 @@ class Synthesis:
         self._residues = [_Residues.of(self.P, blocks[name]) for name in blocks if name not in network.measured]
         self._measured = [MeasuredRows.of(self.P, blocks[name], item) for name, item in network.measured.items()]
         K, C = network.interface_matrices()
-        self._joints = np.vstack([C, K])
-        self._idle = ~(C.any(axis=1) | K.any(axis=1))  # a free direction carries nothing, whatever pivoting leaves
-        self._losses = network.joint_losses()
+        H = network.interface_hysteresis()
+        self._joints = np.vstack([C, K + np.diag(H)])
+        self._idle = ~self._joints.reshape(2, len(C), -1).any(axis=(0, 2))  # free: nothing, whatever pivoting leaves
+        losses = network.joint_losses()
+        self._phase = np.where(H > 0.0, 1.0, losses - 1j)[:, None] if losses.any() or H.any() else -1j  # of w Z / K
         self._stiffness = network.eigenvalues + 1j * network.hysteresis if network.loss_factors else network.eigenvalues
 
     @property
@@ -124,7 +126,7 @@ class Synthesis:
         """
         network, P = self.network, self.P
         C, K = np.split(self._joints, 2)
-        Z = (1.0 + 1j * self._losses[:, None]) * K + 1j * w * C
+        Z = 1j * self._phase * K + 1j * w * C
         own = np.diag(self._stiffness - w**2 + 1j * w * network.damping)
         between = P.T @ (Z @ P)
         held = np.column_stack(  # d of each load; 0 for a force
@@ -156,7 +158,7 @@ class Synthesis:
         """Z @ motion; motion (n_p, m, F)."""
         both = real_times_complex(self._joints, motion)
         viscous, elastic = both[: len(motion)], both[len(motion) :]
-        elastic *= (self._losses[:, None, None] - 1j) / omega if self._losses.any() else -1j / omega
+        elastic *= np.asarray(self._phase)[..., None] / omega
         viscous += elastic
         return viscous
 
