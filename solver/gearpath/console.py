@@ -184,4 +184,6 @@ def print_report(report: ValidationReport) -> None:
     for check in report.checks:
         if not check.passed:
             out.print(f"  {escape(check.name)}: {escape(check.what)}")
+    for name, note in report.notes.items():
+        out.print(f"{escape(name)}: {escape(note)}")
     print_findings(report.findings)

@@ -14,7 +14,8 @@ ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text()
 
 
-WITH_TESTS_OF_THEIR_OWN = {"active_mounts", "run_up"}  # folders of several files, run as a whole by their tests
+# folders of several files, run as a whole by their tests
+WITH_TESTS_OF_THEIR_OWN = {"active_mounts", "flexible_casing", "run_up"}
 EXAMPLES = [path for path in (ROOT / "examples").rglob("*.py") if path.parent.name not in WITH_TESTS_OF_THEIR_OWN]
 
 

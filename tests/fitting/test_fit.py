@@ -263,3 +263,27 @@ def test_unusable_data(change, words):
     data = {"frequencies_hz": np.arange(1.0, 21.0), "frf": np.ones((20, 1, 1))}
     with pytest.raises(InputError, match=words):
         gp.fit_mobility(**{**data, **change})
+
+
+@pytest.mark.parametrize(("power", "words"), [(1, "they would do as accelerance"), (None, "conjugate the data")])
+def test_another_quantity_and_other_phasors_are_named(power, words):
+    f = np.linspace(20.0, 900.0, 300)
+    s = 2j * np.pi * f
+    Y = sum(s / (w**2 + 0.04 * w * s + s**2) for w in 2 * np.pi * np.array([110.0, 300.0, 610.0]))
+    notes = gp.fit_mobility(f, Y.conj() if power is None else Y * s, modes=4).notes
+    assert words in notes[0]
+
+
+def test_noise_in_proportion_to_each_value_ends_the_fit():
+    """A free body: the noise of its rigid motions at the lowest lines is no reason for modes."""
+    rng = np.random.default_rng(0)
+    f = np.linspace(10.0, 3000.0, 400)
+    s, shapes = 2j * np.pi * f, rng.normal(size=(8, 5))
+    w = 2 * np.pi * np.array([0.0, 0.0, 700.0, 1500.0, 2600.0])
+    lines = s[:, None] / (w**2 + 0.02 * w * s[:, None] + s[:, None] ** 2)
+    Y = np.einsum("ar,fr,br->fab", shapes, lines, shapes)
+    noisy = Y * (1 + 0.01 * (rng.normal(size=Y.shape) + 1j * rng.normal(size=Y.shape)) / np.sqrt(2))
+    fit = gp.fit_mobility(f, noisy)
+    assert fit.order <= 12
+    assert (abs(fit.mobility(2 * np.pi * f) - Y) / abs(Y).max(axis=0)).max() < 0.01
+    assert "is noise" in fit.notes[0]

@@ -308,3 +308,30 @@ def test_modes_that_do_not_fit(tmp_path, changes, words):
     } | changes
     with pytest.raises(gp.ModelError, match=words):
         small_machine({key: value for key, value in table.items() if value is not None}, tmp_path)
+
+
+def test_stiffness_and_mass_exchanged(tmp_path):
+    K, M, _ = beam_pair()
+    np.savez(tmp_path / "body.npz", stiffness=M, mass=K)
+    with pytest.raises(gp.ModelError, match=r"components\.body\.file: stiffness: is so small .* exchange"):
+        small_machine({"kind": "matrices", "file": "body.npz", "ports": PORTS}, tmp_path)
+
+
+def test_one_coordinate_twice_in_a_port(tmp_path):
+    K, M, _ = beam_pair()
+    np.savez(tmp_path / "body.npz", stiffness=K, mass=M)
+    ports = {"a": {"uy": 0, "ux": 0}, "b": [1]}
+    with pytest.raises(gp.ModelError, match=r"ports\.a: has one coordinate for several of u., u."):
+        small_machine({"kind": "matrices", "file": "body.npz", "ports": ports}, tmp_path)
+
+
+def test_damping_and_vectors_leave_the_prepared_matrices(tmp_path):
+    """Their preparation takes seconds for a large structure, and a study changes damping often."""
+    K, M, _ = beam_pair()
+    np.savez(tmp_path / "body.npz", stiffness=K, mass=M)
+    model = small_machine({"kind": "matrices", "file": "body.npz", "ports": PORTS}, tmp_path)
+    other = model.replace({"components.body.modal_damping": 0.05, "components.body.loss_factor": 0.1})
+    first, second = (m.system.components["body"] for m in (model, other))
+    assert second.stiffness is first.stiffness
+    assert (second.modal_damping, second.loss_factor, first.loss_factor) == (0.05, 0.1, 0.0)
+    assert first != second

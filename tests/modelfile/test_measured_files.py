@@ -74,13 +74,18 @@ def write_csv(folder, values, pairs, header="frequency_hz"):
     (folder / "data.csv").write_text(f"# a comment\n{text}\n")
 
 
-def write_uff(folder, values, directions, data_type=12, length=1.0, force=1.0, skip=()):
-    """Datasets 164 and 58 of channels at nodes 1, 2, 3, measured along these directions (2 is +Y, -2 is -Y)."""
+def write_uff(folder, values, directions, data_type=12, length=1.0, force=1.0, skip=(), labels=None):
+    """Datasets 164 and 58 of channels at nodes 1, 2, 3, measured along these directions (2 is +Y, -2 is -Y).
+
+    Without dataset 164 where the axes have `labels` and `length` is None.
+    """
     path = folder / "data.unv"
     path.unlink(missing_ok=True)
     file = pyuff.UFF(str(path))
-    units = {"units_code": 9, "units_description": "own", "temp_mode": 1, "length": length, "force": force}
-    file._write_set(pyuff.prepare_164(**units, temp=1.0, temp_offset=0.0), "add")
+    if length is not None:
+        units = {"units_code": 9, "units_description": "own", "temp_mode": 1, "length": length, "force": force}
+        file._write_set(pyuff.prepare_164(**units, temp=1.0, temp_offset=0.0), "add")
+    axes = dict(zip(("ordinate_axis_units_lab", "orddenom_axis_units_lab"), labels or ()))
     for i in range(3):
         for k in range(3):
             if (i, k) not in skip:
@@ -90,7 +95,7 @@ def write_uff(folder, values, directions, data_type=12, length=1.0, force=1.0, s
                         func_type=4, rsp_node=i + 1, rsp_dir=directions[i], ref_node=k + 1, ref_dir=directions[k],
                         data=signs * full(values)[:, i, k], x=F, binary=0, abscissa_spacing=1, abscissa_min=0.0,
                         abscissa_inc=F[1], ordinate_spec_data_type=data_type, orddenom_spec_data_type=13,
-                        abscissa_spec_data_type=18,
+                        abscissa_spec_data_type=18, **axes,
                     ),
                     "add",
                 )  # fmt: skip
@@ -137,6 +142,31 @@ def test_a_universal_file_says_quantity_units_and_signs(tmp_path):
     write_uff(tmp_path, acceleration * 1e3 / 1e3, (-1, 2, -2), length=1e3, force=1e3, skip=[(0, 2)])
     ports = {"seat": {"ux": "1:ux", "uy": "2:uy"}, "foot": {"uy": "3:uy"}}
     assert_is_the_mobility(component(tmp_path, {"file": "data.unv", "ports": ports}))
+
+
+def test_a_universal_file_says_units_on_its_axes(tmp_path):
+    H = mobility() * (1j * W)[:, None, None]
+    table = {"file": "data.unv", "ports": {"seat": {"ux": "1:ux", "uy": "2:uy"}, "foot": {"uy": "3:uy"}}}
+    write_uff(tmp_path, H / 9.80665 * 1e3, (1, 2, 2), length=None, labels=("g", "kN"))
+    assert_is_the_mobility(component(tmp_path, table))
+    write_uff(tmp_path, H, (1, 2, 2), labels=("(m/s**2)", "N"))
+    assert_is_the_mobility(component(tmp_path, table))
+    write_uff(tmp_path, H, (1, 2, 2), labels=("g", "N"))
+    assert "unit_motion: is missing; the file says g on an axis, and 1 of SI units" in refusal(tmp_path, table)
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [
+        (1j * W, "quantity: is mobility, but no passive structure has such driving points; they would do as accel"),
+        (1 / (1j * W), "they would do as receptance"),
+        (None, "as with phasors e^(-i w t); conjugate the data"),
+        (np.full(len(W), -1.0), "at seat.ux, seat.uy, foot.uy the driving point gives off power"),
+    ],
+)
+def test_data_that_are_not_what_they_are_said_to_be(tmp_path, factor, words):
+    write_npz(tmp_path, mobility().conj() if factor is None else mobility() * factor[:, None, None])
+    assert words in refusal(tmp_path, {**GOOD, "quantity": "mobility"})
 
 
 def test_units_of_the_table_go_before_those_of_the_file(tmp_path):

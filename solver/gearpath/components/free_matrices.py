@@ -46,6 +46,7 @@ def free_matrices(
         raise InputError(
             f"mass is {M.shape[0]} x {M.shape[1]} and stiffness {K.shape[0]} x {K.shape[1]}; give equal sizes"
         )
+    _check_order(M, K)
     if scipy.sparse.issparse(K) or scipy.sparse.issparse(M):
         K, M = scipy.sparse.csc_array(K), scipy.sparse.csc_array(M)
         M = _with_mass_at_ports(M, K, ports)
@@ -67,6 +68,16 @@ def free_matrices(
         P = np.eye(len(M)) - R @ (R.T @ M)  # R is M-orthonormal: takes out what printed digits leave of resistance
         K = _symmetric(P.T @ K @ P)
     return FreeMatrices(M, K, R)
+
+
+def _check_order(M: Real | Sparse, K: Real | Sparse) -> None:
+    """Refuses matrices whose stiffest coordinate would take more than ten seconds for one oscillation."""
+    mass, stiff = M.diagonal(), K.diagonal()
+    if mass.min() >= 0.0 and 0.0 < (stiff / np.where(mass > 0.0, mass, np.inf)).max() < _STILL:
+        raise InputError(
+            "stiffness: is so small beside the mass that no coordinate reaches 0.1 Hz; exchange stiffness and mass, or "
+            "give both in the same units"
+        )
 
 
 def checked(name: str, matrix: Real | Sparse) -> Real | Sparse:
@@ -135,4 +146,7 @@ def _rigid_modes(K: Real | Sparse, M: Real | Sparse, given: int | None) -> Real:
             f"{np.sqrt(abs(values).max()) / (2.0 * np.pi):.2g} Hz are rigid; give their number as rigid_motions "
             "(6 of a free body, 0 of a held one), or export it with more digits"
         )
+    if given is not None and given < len(values) and values[given] <= _STILL:
+        found = int((values <= _STILL).sum())
+        raise InputError(f"rigid_motions: {given} is given, but {found} motions meet no resistance; give this number")
     return np.asarray(R @ turn[:, : len(values) if given is None else given])

@@ -1,10 +1,12 @@
 """The fit of real modes to measured mobilities."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..components.driving_points import complaint
 from ..errors import InputError
 from ..numerics.arrays import Complex, Real
 from .complex_modes import complex_residual
@@ -39,11 +41,15 @@ def fit_mobility(
             fit ends where a further mode would fit noise, and says so.
 
     Modes are added where they take most from the misfit and all are refined together by nonlinear least squares
-    (`order`, `pursuit`, `refine`). Raises InputError for data of another shape, not finite or without any response.
+    (`order`, `pursuit`, `refine`). Notes say what the data are not, such as driving points that are not those of
+    `quantity`. Raises InputError for data of another shape, not finite or without any response.
     """
     f, H = _checked(frequencies_hz, frf, modes, tolerance)
     omega = 2.0 * np.pi * f
-    return fit_modes(omega, as_mobility(omega, H, quantity), modes, tolerance)
+    Y = as_mobility(omega, H, quantity)
+    wrong = complaint(omega, Y, quantity, [f"channel {k}" for k in range(Y.shape[1])])
+    fit = fit_modes(omega, Y, modes, tolerance)
+    return replace(fit, notes=(f"the data are given as {quantity}, but {wrong}", *fit.notes)) if wrong else fit
 
 
 def fit_modes(omega: Real, mobility: Complex, modes: int | None, tolerance: float) -> ModalFit:

@@ -48,7 +48,7 @@ def _is_as_good(problem: Problem, found: Refined, best: Refined, tolerance: floa
     """Within the tolerance, or as near as what a mode must be worth; or within `most` where that is no noise."""
     if largest_error(problem, found.residual) <= tolerance:
         return True
-    near = found.cost <= max(best.cost * (1.0 + worth(problem)), most)
+    near = found.cost <= max(best.cost * (1.0 + worth(problem, best.residual)), most)
     return near and largest_error(problem, best.residual) > tolerance
 
 

@@ -34,7 +34,15 @@ def is_noise(problem: Problem, residual: Real) -> bool:
     return correlation(problem, residual) <= SYSTEMATIC
 
 
-def worth(problem: Problem) -> float:
-    """Part of the misfit that a mode must take."""
+def worth(problem: Problem, residual: Real) -> float:
+    """Part of the misfit that a mode must take: (m + 2) ln(n) / n of n independent numbers of equal size.
+
+    Noise that is larger at resonances is that of fewer numbers, 3 (sum e^2)^2 / sum e^4.
+    """
     n = problem.stacked.size
-    return (problem.channels + 2) * math.log(n) / n
+    if not is_noise(problem, residual):
+        return (problem.channels + 2) * math.log(n) / n
+    squares = residual**2 * problem.weight
+    total = float(squares.sum())
+    equal = min(float(n), 3.0 * total**2 / float((squares**2).sum())) if total else float(n)
+    return (problem.channels + 2) * math.log(n) / equal

@@ -57,7 +57,7 @@ def _grown(problem: Problem, best: Refined, most: int, aim: float, at_once: int)
         if not new:
             break
         tried = refine(problem, best.modes.joined(new), *ROUGH)
-        enough = best.cost * (1.0 - min(len(new) * worth(problem), 0.5))
+        enough = best.cost * (1.0 - min(len(new) * worth(problem, best.residual), 0.5))
         if tried.cost > enough:
             tried = refine(problem, tried.modes, *FINE)
         if tried.cost > enough:

@@ -18,8 +18,9 @@ from ..network.system import (
 )
 from .bearing_tables import OperationTable
 from .build_bearings import build_mounting, catalogue_of
-from .build_foreign import build_matrices, build_modal
+from .build_matrices import build_matrices
 from .build_measured import build_measured
+from .build_modal import build_modal
 from .build_structures import build_frame, build_material, build_plate, shear_coefficient_of
 from .foreign_tables import MatricesTable, ModalTable
 from .joint_tables import BeamJointTable, BearingTable, JointTable, RigidJointTable

@@ -1,5 +1,7 @@
 """Measured components from their tables: FRFs of a file as mobilities between the freedoms of the ports, SI units."""
 
+import warnings
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 
@@ -7,6 +9,7 @@ import numpy as np
 
 from ..components import Measured
 from ..components.dofs import is_rotation
+from ..components.driving_points import active_part, complaint
 from ..errors import InputError, ModelError
 from ..fitting import as_mobility
 from ..numerics.arrays import Complex, Real
@@ -18,6 +21,8 @@ from .hints import hint
 from .measured_tables import FORCES, MOTIONS, MeasuredTable
 from .wording import show
 
+_SAME = 1e-4  # relative difference of two statements of one unit
+_OFTEN = 0.05  # of the driving-point values, that noise does not make active
 READERS = {".npz": read_npz, ".csv": read_csv, ".unv": read_uff, ".uff": read_uff, ".uf": read_uff}
 
 
@@ -30,6 +35,7 @@ def build_measured(table: MeasuredTable, folder: Path, key: str) -> Measured:
     frf = _reciprocal(file.frf[:, picked][:, :, picked], places, key)
     omega = 2.0 * np.pi * file.frequencies
     mobility = as_mobility(omega, frf * _scale(table, file, quantity, [dof for _, dof, _ in places], key), quantity)
+    _check_driving_points(omega, mobility, quantity, [f"{port}.{dof}" for port, dof, _ in places], key)
     ports: dict[str, dict[str, int]] = {name: {} for name in table.ports}
     for k, (port, dof, _) in enumerate(places):
         ports[port][dof] = k
@@ -107,18 +113,49 @@ def _reciprocal(frf: Complex, places: list[tuple[str, str, int | str]], key: str
 
 def _scale(table: MeasuredTable, file: FrfFile, quantity: str, dofs: list[str], key: str) -> Real:
     """SI units per unit of the file, (m, m); rotations are in rad, moments in units of force times length."""
-    motion, force, length = file.length, file.force, file.length
-    if isinstance(table.unit_motion, str):
-        if table.unit_motion not in MOTIONS[quantity]:
-            raise ModelError(
-                f"{key}.unit_motion",
-                f"{show(table.unit_motion)} is no unit of {quantity}",
-                hint("", MOTIONS[quantity]),
-            )
-        motion, length = MOTIONS[quantity][table.unit_motion], 1.0
-    elif table.unit_motion is not None:
-        motion, length = table.unit_motion, 1.0
-    if table.unit_force is not None:
-        force = FORCES[table.unit_force] if isinstance(table.unit_force, str) else table.unit_force
+    if isinstance(table.unit_motion, str) and table.unit_motion not in MOTIONS[quantity]:
+        raise ModelError(
+            f"{key}.unit_motion", f"{show(table.unit_motion)} is no unit of {quantity}", hint("", MOTIONS[quantity])
+        )
+    length = 1.0 if table.unit_motion is not None or file.length is None else file.length
+    motion = _unit(table.unit_motion, file.motion_label, file.length, MOTIONS[quantity], f"{key}.unit_motion")
+    force = _unit(table.unit_force, file.force_label, file.force, FORCES, f"{key}.unit_force")
     turns = np.array([is_rotation(dof) for dof in dofs])
     return np.where(turns, 1.0, motion)[:, None] / np.where(turns, force * length, force)
+
+
+def _unit(given: str | float | None, label: str, stated: float | None, known: Mapping[str, float], key: str) -> float:
+    """A unit in SI: as the table gives it, else as the file does, by its dataset of units or on its axis."""
+    if given is not None:
+        return known[given] if isinstance(given, str) else given
+    written = {_plain(name): name for name in known}.get(_plain(label))
+    if written is None or stated is None:
+        return known[written] if written else stated or 1.0
+    if abs(known[written] / stated - 1.0) > _SAME:
+        raise ModelError(
+            key,
+            f"is missing; the file says {label} on an axis, and {stated:g} of SI units by its dataset 164",
+            f"give it as {show(written)} or as that number",
+        )
+    return stated
+
+
+def _plain(label: str) -> str:
+    """A unit as it is compared: "m/s^2", "(m/s**2)" and "M/S2" are one."""
+    return label.lower().translate(str.maketrans("", "", " ()[]^*"))
+
+
+def _check_driving_points(omega: Real, mobility: Complex, quantity: str, channels: list[str], key: str) -> None:
+    """Refuses data that cannot be what they are said to be, and warns of such as are active for another reason."""
+    found = complaint(omega, mobility, quantity, channels)
+    if found:
+        raise ModelError(
+            f"{key}.quantity", f"is {quantity}, but {found}", "check quantity, signs and units of the file"
+        )
+    active = active_part(mobility)
+    if active > _OFTEN:
+        warnings.warn(
+            f"{key}: {100.0 * active:.0f} % of the driving-point values give off power, as nothing passive does; "
+            "power ratios there are not to be trusted",
+            stacklevel=2,
+        )

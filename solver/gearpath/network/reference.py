@@ -52,7 +52,9 @@ def reference_solution(network: Network, omega: Real) -> Reference:
     measured components.
     """
     if any(isinstance(item, Measured) for item in network.system.components.values()):
-        raise AccuracyError("a measured component has no matrices; give the modes of its fit (fitted_system)")
+        raise AccuracyError(
+            "a measured component has no matrices, so that nothing can be solved in another way; leave the check out"
+        )
     parts = reference_parts(network)
     motion = scipy.sparse.hstack([part.motion for part in parts], format="csc")
     sparse = any(scipy.sparse.issparse(part.structure.mass) for part in parts)

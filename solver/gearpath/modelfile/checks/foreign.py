@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from ...errors import ModelError
-from ..build_foreign import build_matrices, build_modal
+from ..build_matrices import build_matrices
+from ..build_modal import build_modal
 from ..foreign_tables import MatricesTable, ModalTable
 from ..tables import FileTable
 

@@ -17,8 +17,10 @@ class FrfFile:
     frf: Complex  # (F, n, n): response row, force column
     channels: tuple[str, ...]  # names; a channel may be named by its number from 0 on as well
     quantity: str = ""  # accelerance, mobility or receptance, where the file says it
-    length: float = 1.0  # m per unit of length of the file
-    force: float = 1.0  # N per unit of force of the file
+    length: float | None = None  # m per unit of length of the file, where it says so
+    force: float | None = None  # N per unit of force of the file, likewise
+    motion_label: str = ""  # what it writes on the axis of the response
+    force_label: str = ""  # and of the force
 
 
 def as_lines(frequencies: Real, frf: Complex, what: str) -> tuple[Real, Complex]:

@@ -19,6 +19,7 @@ _FRF = 4  # function type
 _QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}  # of the ordinate's numerator
 _UNKNOWN = (0, 1)  # data types that say nothing
 _FORCES = (9, 13)  # reaction force, excitation force
+_DIRECTIONS = ("rsp_dir", "ref_dir")
 _MANTISSA = 1e-6  # spacing of lines that are the same, relative
 
 
@@ -39,8 +40,9 @@ def read_uff(path: Path) -> FrfFile:
     f, H = as_lines(x, frf, path.name)
     units = next((item for item in sets if item.get("type") == 164), {})
     # dataset 164 holds the numbers by which the file's values are divided to give SI
-    length, force = (1.0 / float(units.get(key) or 1.0) for key in ("length", "force"))
-    return FrfFile(f, H, names, _quantity(path, functions), length, force)
+    length, force = (1.0 / float(units[key]) if units.get(key) else None for key in ("length", "force"))
+    labels = (_label(path, functions, key) for key in ("ordinate_axis_units_lab", "orddenom_axis_units_lab"))
+    return FrfFile(f, H, names, _quantity(path, functions), length, force, *labels)
 
 
 def _sets(path: Path) -> list[dict[str, Any]]:
@@ -80,6 +82,15 @@ def _channel(path: Path, item: dict[str, Any], side: str) -> tuple[str, float]:
     if not 1 <= abs(direction) <= 6:
         raise InputError(f"{path.name}: node {node} has the direction {direction}; give one from 1 to 6 (+X to +RZ)")
     return f"{node}:{DOFS[abs(direction) - 1]}", 1.0 if direction > 0 else -1.0
+
+
+def _label(path: Path, functions: list[dict[str, Any]], key: str) -> str:
+    """The unit on an axis of translations, "" where there is none."""
+    own = {str(item.get(key) or "").strip() for item in functions if max(abs(int(item[k])) for k in _DIRECTIONS) <= 3}
+    own -= {"", "NONE", "none", "None"}
+    if len(own) > 1:
+        raise InputError(f"{path.name}: has FRFs in {' and '.join(sorted(own))}; export all in the same units")
+    return own.pop() if own else ""
 
 
 def _quantity(path: Path, functions: list[dict[str, Any]]) -> str:

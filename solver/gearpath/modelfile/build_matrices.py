@@ -1,9 +1,8 @@
-"""Components from elsewhere: matrices and modes of files as components in SI units."""
+"""Components of matrices from their tables: stiffness, mass and damping of a file in SI units, and their ports."""
 
-from collections.abc import Callable
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 import scipy.sparse
@@ -16,19 +15,15 @@ from ..numerics.arrays import Real, Sparse
 from .data.calculix import read_calculix
 from .data.matrices import MatrixFile
 from .data.matrix_market import read_matrix_market
-from .data.modes import ModeFile, read_modes_npz, read_modes_uff
 from .data.npz import read_npz
 from .data.op4 import read_op4
-from .foreign_tables import MatricesTable, MatrixPortTable, ModalTable
-from .hints import hint
+from .foreign_files import ENERGY, LENGTH, found_in, guarded
+from .foreign_tables import MatricesTable, MatrixPortTable
 from .wording import show
 
-T = TypeVar("T")
 Stamps = tuple[tuple[int, int], ...]
 _MATRIX_FORMATS = (".npz", ".op4", ".sti", ".mtx")
-_MODE_FORMATS = {".npz": read_modes_npz, ".unv": read_modes_uff, ".uff": read_modes_uff}
-_LENGTH = {"SI": 1.0, "mm-t-s": 1e-3}  # m
-_ENERGY = {"SI": 1.0, "mm-t-s": 1e-3}  # J: N mm, and t mm^2 / s^2
+_BESIDE = {"modal_damping", "loss_factor", "vectors"}  # keys that change nothing about the matrices
 _DENSE = 600  # coordinates up to which all modes of a sparse structure are kept
 _MOST = 3000  # coordinates of a structure with a damping matrix, whose modes are all computed
 
@@ -36,62 +31,46 @@ _MOST = 3000  # coordinates of a structure with a damping matrix, whose modes ar
 def build_matrices(table: MatricesTable, folder: Path, dofs: tuple[str, ...], key: str) -> Matrices | ModalModel:
     """The component of a table; with a damping matrix in its modes. Raises ModelError for data that do not fit.
 
-    Built once for the same table and files: a model is changed and checked again many times in a study.
+    Prepared once for the same files and ports: a model is changed and checked again many times in a study.
     """
-    return _built(table.model_dump_json(exclude_unset=True), folder, dofs, key, _stamps(table, folder))
+    text = table.model_dump_json(exclude_unset=True, exclude=_BESIDE)
+    component = _prepared(text, folder, dofs, key, _stamps(table, folder))
+    if isinstance(component, ModalModel) and table.modal_damping:
+        remedy = "leave one of them out of the file and the table"
+        raise ModelError(f"{key}.modal_damping", "is given beside a damping matrix", remedy)
+    return _with_damping(component, table.modal_damping, table.loss_factor)
 
 
 @lru_cache(maxsize=8)
-def _built(text: str, folder: Path, dofs: tuple[str, ...], key: str, changed: Stamps) -> Matrices | ModalModel:
+def _with_damping(component: Matrices | ModalModel, ratio: float, loss_factor: float) -> Matrices | ModalModel:
+    if isinstance(component, Matrices):
+        return replace(component, modal_damping=ratio, loss_factor=loss_factor)
+    return replace(component, loss_factor=loss_factor)
+
+
+@lru_cache(maxsize=8)
+def _prepared(text: str, folder: Path, dofs: tuple[str, ...], key: str, changed: Stamps) -> Matrices | ModalModel:
+    """The component without modal damping and loss factor."""
     table = MatricesTable.model_validate_json(text)
-    file = _guarded(f"{key}.file", lambda: _matrices(table, folder, changed))
+    file = guarded(f"{key}.file", lambda: _matrices(table, folder, changed))
     ports = {name: _coordinates(port, file, dofs, f"{key}.ports.{name}") for name, port in table.ports.items()}
-    scale = np.where(_turns(file, ports), 1.0, _LENGTH[table.units])
-    if file.damping is not None:
-        _check_damping(table, len(scale), key)
+    scale = np.where(_turns(file, ports), 1.0, LENGTH[table.units])
+    if file.damping is not None and len(scale) > _MOST:
+        problem = f"holds a damping matrix of {len(scale)} x {len(scale)}, more than {_MOST}"
+        raise ModelError(f"{key}.file", problem, "leave it out and give modal_damping or loss_factor")
 
     def si(matrix: Real | Sparse, dense: bool = file.damping is not None) -> Real | Sparse:
-        return _si(matrix, scale, _ENERGY[table.units], dense)
+        return _si(matrix, scale, ENERGY[table.units], dense)
 
     seen = [place for places in ports.values() for place in places.values()]
-    prepared = _guarded(
+    prepared = guarded(
         f"{key}.file", lambda: free_matrices(si(file.mass), si(file.stiffness), seen, table.rigid_motions)
     )
-    component = Matrices(
-        prepared.mass,
-        prepared.stiffness,
-        prepared.rigid_modes,
-        ports,
-        _places(table, file),
-        table.modal_damping,
-        table.loss_factor,
-    )
+    component = Matrices(prepared.mass, prepared.stiffness, prepared.rigid_modes, ports, _places(table, file))
     if file.damping is None:
         return component
     given = file.damping
-    return _damped(component, _guarded(f"{key}.file", lambda: checked("damping", si(given))), key)
-
-
-def _check_damping(table: MatricesTable, size: int, key: str) -> None:
-    """A damping matrix needs all modes, and no other damping beside it."""
-    if table.modal_damping or size > _MOST:
-        problem = (
-            "is given beside a damping matrix"
-            if table.modal_damping
-            else f"replaces a damping matrix of {size} x {size}"
-        )
-        raise ModelError(f"{key}.modal_damping", problem, "leave one of them out of the file and the table")
-
-
-def _guarded(key: str, work: Callable[[], T]) -> T:
-    """The result of `work`, whose refusals name the key."""
-    try:
-        return work()
-    except InputError as error:
-        if isinstance(error, ModelError):
-            raise
-        problem, _, remedy = str(error).partition("; ")
-        raise ModelError(key, problem, remedy) from None
+    return _damped(component, guarded(f"{key}.file", lambda: checked("damping", si(given))), key)
 
 
 def _matrices(table: MatricesTable, folder: Path, changed: Stamps) -> MatrixFile:
@@ -130,7 +109,7 @@ def _coordinates(port: MatrixPortTable, file: MatrixFile, dofs: tuple[str, ...],
         raise ModelError(key, "is given in no way or in several", "give a list of coordinates, a node, or ux = ...")
     if port.node is not None:
         found = _of_node(port.node, file, key)
-        return {dof: _found(found, dof, f"{key}.node") for dof in port.supplied(dofs)}
+        return {dof: found_in(found, dof, f"{key}.node") for dof in port.supplied(dofs)}
     places = port.named
     if port.coordinates is not None:
         names = port.supplied(dofs)
@@ -140,6 +119,8 @@ def _coordinates(port: MatrixPortTable, file: MatrixFile, dofs: tuple[str, ...],
                 key, f"has {len(port.coordinates)} coordinates", f"give {counts}, or name them as ux = ..."
             )
         places = dict(zip(names, port.coordinates))
+    if len(set(places.values())) < len(places):
+        raise ModelError(key, f"has one coordinate for several of {', '.join(places)}", "give each its own")
     size = int(file.stiffness.shape[0])
     for dof, place in places.items():
         if place >= size:
@@ -158,13 +139,6 @@ def _of_node(node: int, file: MatrixFile, key: str) -> dict[str, int]:
             f"{key}.node", f"the file has no node {node}", f"give one from {file.nodes.min()} to {file.nodes.max()}"
         )
     return {DOFS[int(file.directions[place]) - 1]: int(place) for place in here}
-
-
-def _found(found: dict[str, T], dof: str, key: str) -> T:
-    """What a node has for a degree of freedom."""
-    if dof not in found:
-        raise ModelError(key, f"the node has no {dof} in the file", f"name what it has: {', '.join(found)}")
-    return found[dof]
 
 
 def _turns(file: MatrixFile, ports: dict[str, dict[str, int]]) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
@@ -190,7 +164,7 @@ def _si(matrix: Real | Sparse, scale: Real, energy: float, dense: bool) -> Real 
 
 
 def _places(table: MatricesTable, file: MatrixFile) -> dict[str, tuple[float, float, float]]:
-    length, places = _LENGTH[table.units], {}
+    length, places = LENGTH[table.units], {}
     for name, port in table.ports.items():
         if port.at is not None:
             places[name] = port.at
@@ -204,74 +178,7 @@ def _damped(component: Matrices, damping: Real, key: str) -> ModalModel:
     """The component in its modes, with the damping ratio of each and dashpots for what couples them."""
     structure = component.structure(DOFS, {name: name for name in component.ports})
     basis = modes(structure)
-    found = _guarded(f"{key}.file", lambda: split_damping(basis.shapes.T @ damping @ basis.shapes, basis.eigenvalues))
+    found = guarded(f"{key}.file", lambda: split_damping(basis.shapes.T @ damping @ basis.shapes, basis.eigenvalues))
     w = np.sqrt(basis.eigenvalues)
     ratios = np.divide(found.own, 2.0 * w, out=np.zeros_like(w), where=w > 0.0)
     return modal_model(basis, ratios, structure.ports, component.places, component.loss_factor, found.dashpots)
-
-
-def build_modal(table: ModalTable, folder: Path, key: str) -> ModalModel:
-    """The component of a table. Raises ModelError for data that do not fit."""
-    file = _guarded(f"{key}.file", lambda: _modes(table, folder)) if table.file else None
-    if file is None and table.frequencies is None:
-        raise ModelError(f"{key}.frequencies", "is missing", "give the frequencies of the modes in Hz, or a file")
-    if file is not None and (table.frequencies is not None or table.modal_masses is not None):
-        raise ModelError(f"{key}.frequencies", "is given beside a file that has it", "leave one of them out")
-    frequencies = np.array(table.frequencies) if file is None else file.frequencies
-    size = len(frequencies)
-    damping = table.damping if table.damping is not None else (0.0,) if file is None or file.damping is None else None
-    ratios = _each(damping, size, f"{key}.damping") if damping is not None else np.asarray(file.damping)  # type: ignore[union-attr]
-    masses = _each(table.modal_masses or (1.0,), size, f"{key}.modal_masses") if file is None else file.modal_masses
-    order = np.argsort(frequencies, kind="stable")
-    length, energy = _LENGTH[table.units], _ENERGY[table.units]
-    factor = 1.0 / np.sqrt(masses * energy)  # to modal masses of 1 kg m^2 per unit of the coordinate squared
-    ports = {}
-    for name, port in table.ports.items():
-        here = f"{key}.ports.{name}"
-        shapes = port.named if port.node is None else _of_file(port.node, port.supplied(()), file, here)
-        if not shapes:
-            raise ModelError(here, "has no shape", "give one at least, such as uy = [...], or a node of the file")
-        ports[name] = {
-            dof: tuple(
-                float(v)
-                for v in (_row(shape, size, f"{here}.{dof}") * factor * (1.0 if is_rotation(dof) else length))[order]
-            )
-            for dof, shape in shapes.items()
-        }
-    return ModalModel(
-        tuple(float(v) for v in (2.0 * np.pi * frequencies[order]) ** 2),
-        tuple(float(v) for v in ratios[order]),
-        ports,
-        {name: port.at for name, port in table.ports.items() if port.at is not None},
-        table.loss_factor,
-    )
-
-
-def _modes(table: ModalTable, folder: Path) -> ModeFile:
-    path = folder / table.file
-    if path.suffix.lower() not in _MODE_FORMATS:
-        raise InputError(f"{show(table.file)} is no file of modes; give a .npz, .unv or .uff")
-    return _MODE_FORMATS[path.suffix.lower()](path)
-
-
-def _each(values: tuple[float, ...], size: int, key: str) -> Real:
-    if len(values) not in (1, size):
-        raise ModelError(key, f"has {len(values)} numbers for {size} modes", "give one, or one a mode")
-    return np.full(size, values[0]) if len(values) == 1 else np.array(values)
-
-
-def _row(shape: object, size: int, key: str) -> Real:
-    row = np.atleast_1d(np.asarray(shape, float))
-    if row.shape != (size,):
-        raise ModelError(key, f"has {row.size} numbers for {size} modes", "give one a mode")
-    return row
-
-
-def _of_file(node: int, dofs: tuple[str, ...], file: ModeFile | None, key: str) -> dict[str, Real]:
-    if file is None:
-        raise ModelError(f"{key}.node", "there is no file that has nodes", "give shapes, such as uy = [...]")
-    found = {dof: file.shapes[f"{node}:{dof}"] for dof in DOFS if f"{node}:{dof}" in file.shapes}
-    if not found:
-        nodes = list(dict.fromkeys(name.split(":")[0] for name in file.shapes))
-        raise ModelError(f"{key}.node", f"the file has no node {node}", hint(str(node), nodes))
-    return {dof: _found(found, dof, f"{key}.node") for dof in dofs}
