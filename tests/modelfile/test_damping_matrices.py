@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 import scipy.linalg
+from foreign_cases import frame_model, matrices_of, with_casing
 
 import gearpath as gp
 from gearpath.network.assemble import assemble
 from gearpath.network.reference import reference_solution
+from gearpath.study.sweeping import reference_checks
 
 N = 7
 HELD, DAMPER = 1e6, 50.0
@@ -162,3 +164,14 @@ def test_the_direct_solution_agrees(tmp_path):
     model = machine(tmp_path, *CASES["Rayleigh and two"][:3])
     exact = reference_solution(assemble(model.system), 2 * np.pi * model.frequencies())
     assert gp.power_flow(model).input_power.values == pytest.approx(exact.input_power, rel=1e-9)
+
+
+def test_all_checks_of_a_machine_on_a_casing_with_rayleigh_damping(tmp_path):
+    """Mass-proportional damping resists rigid motion, too: in the direct solution as in the synthesis."""
+    model = frame_model(0.0)
+    K, M, ports = matrices_of(model)
+    seat = np.eye(len(K))[ports["bearing_1"][0]]
+    np.savez(tmp_path / "casing.npz", stiffness=K, mass=M, damping=1e-6 * K + 3.0 * M + 100.0 * np.outer(seat, seat))
+    damped = with_casing(model, {"kind": "matrices", "file": "casing.npz", "ports": ports}, tmp_path)
+    failed = [check for check in reference_checks(damped, quiet=True) if not check.passed]
+    assert failed == []

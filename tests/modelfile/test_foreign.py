@@ -7,6 +7,7 @@ from foreign_cases import frame_model, matrices_of, with_casing, written
 
 import gearpath as gp
 from gearpath.network.assemble import assemble
+from gearpath.network.foreign import described
 from gearpath.network.reference import reference_solution
 
 FORMS = ("npz", "sparse npz", "mtx", "op4", "sti")
@@ -310,6 +311,19 @@ def test_modes_that_do_not_fit(tmp_path, changes, words):
         small_machine({key: value for key, value in table.items() if value is not None}, tmp_path)
 
 
+def test_a_component_is_described_by_mass_and_frequency(tmp_path):
+    K, M, w = beam_pair()
+    np.savez(tmp_path / "body.npz", stiffness=K, mass=M)
+    model = small_machine({"kind": "matrices", "file": "body.npz", "ports": PORTS}, tmp_path)
+    first = f"first elastic one {w / (2 * np.pi):.4g} Hz"
+    assert described(model.system) == {"body": f"matrices, 2 modes, 1 rigid, {first}, mass 5 kg along uy"}
+    data = model.to_dict()
+    ports = {"a": {"uy": [0.6, 0.5]}, "b": {"uy": [0.6, -0.5]}}
+    data["components"]["body"] = {"kind": "modal", "frequencies": [0.0, 300.0], "ports": ports}
+    found = described(gp.Model.from_dict(data, str(tmp_path / "model.toml")).system)
+    assert found == {"body": f"modal, 2 modes, 1 rigid, first elastic one 300 Hz, mass {1 / 0.36:.4g} kg along uy"}
+
+
 def test_stiffness_and_mass_exchanged(tmp_path):
     K, M, _ = beam_pair()
     np.savez(tmp_path / "body.npz", stiffness=M, mass=K)
@@ -328,7 +342,7 @@ def test_one_coordinate_twice_in_a_port(tmp_path):
 def test_damping_and_vectors_leave_the_prepared_matrices(tmp_path):
     """Their preparation takes seconds for a large structure, and a study changes damping often."""
     K, M, _ = beam_pair()
-    np.savez(tmp_path / "body.npz", stiffness=K, mass=M)
+    np.savez(tmp_path / "body.npz", stiffness=1.2345 * K, mass=M)  # of no other test
     model = small_machine({"kind": "matrices", "file": "body.npz", "ports": PORTS}, tmp_path)
     other = model.replace({"components.body.modal_damping": 0.05, "components.body.loss_factor": 0.1})
     first, second = (m.system.components["body"] for m in (model, other))

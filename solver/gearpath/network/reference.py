@@ -32,6 +32,7 @@ from .reference_parts import Part, load_of, reference_parts
 Extended = NDArray[np.longdouble]
 ExtendedComplex = NDArray[np.clongdouble]
 _REFINEMENTS = 10
+_EARNEST = 1e-9  # of |K||R|: more is no rounding
 
 
 @dataclass(frozen=True)
@@ -144,7 +145,7 @@ def _exactly_free(structure: Structure, matrix: Real) -> Extended:
 
     Element stiffnesses of 1e11 N/m leave a net force of 1e-5 N per m of rigid motion, which counts beside the
     inertia forces at low frequency; damping likewise would dissipate. K - M R R^T K and its transpose, R the
-    mass-normalised rigid motions.
+    mass-normalised rigid motions. A damping matrix may resist them in earnest; then it is left alone.
     """
     M, K = np.asarray(structure.mass).astype(np.longdouble), matrix.astype(np.longdouble)
     basis: list[Extended] = []
@@ -156,6 +157,8 @@ def _exactly_free(structure: Structure, matrix: Real) -> Extended:
     if not basis:
         return K
     R = np.array(basis).T
+    if (abs(K @ R) > _EARNEST * (abs(K) @ abs(R))).any():
+        return K
     momentum = M @ R
     K = K - momentum @ (R.T @ K)
     return K - (K @ R) @ momentum.T

@@ -9,6 +9,7 @@ from ..components import GearTrain, Section
 from ..components.dofs import is_rotation
 from ..joints import RIGID, Joint, Port
 from ..joints.joint import Matrix
+from ..network.foreign import described
 from ..network.ports import joint_place
 from ..network.system import MeshExcitation, System
 from .table import Cell, MatrixCell, Table, table
@@ -32,7 +33,10 @@ def model_tables(system: System) -> list[Table]:
 
 def component_table(system: System) -> Table:
     """Every component with its scalar data."""
-    rows = [[name, _kind(item), "; ".join(_scalars(item))] for name, item in system.components.items()]
+    of_files = described(system)
+    rows = [
+        [name, _kind(item), of_files.get(name) or "; ".join(_scalars(item))] for name, item in system.components.items()
+    ]
     return table("Components (SI units)", ["component", "kind", "data"], rows, text=3)
 
 

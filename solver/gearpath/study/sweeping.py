@@ -19,6 +19,7 @@ from ..files import write_text
 from ..fmu.checks import Check
 from ..modelfile import Model
 from ..network.assemble import assemble
+from ..network.foreign import described
 from ..network.modal import ModalNetwork
 from ..network.power import power_flow, ratio
 from ..network.reference import reference_solution
@@ -45,6 +46,8 @@ def run(model: Model, output: Path | None, check: bool, json: bool) -> bool:
         console.print_json(as_dict(flow, checks))
     else:
         _print(flow, checks)
+        for name, words in described(model.system).items():
+            console.out.print(f"{escape(name)}: {words}", highlight=False)
         if output is not None:
             console.out.print(f"wrote {escape(str(output))}")
     return all(item.passed for item in checks)
@@ -67,7 +70,7 @@ def reference_checks(model: Model, quiet: bool = False) -> list[Check]:
     balance = abs(every.dissipated_power.sum(axis=0) - every.input_power) / every.input_power
     gross = abs(every.path_power).sum(axis=0)
     returned = ratio(-every.transmitted_power, gross)
-    forces = _force_deviation(modal, solved.force[:, 0], reference.force)
+    forces = _force_deviation(modal, solved.force[: len(reference.force), 0], reference.force)
     alpha = ratio(abs(flow.share() - reference.alpha), abs(reference.alpha))
     on = f"on {len(omega)} lines" + (", plates and frames reduced" if reduced else "")
     return [
