@@ -35,7 +35,7 @@ def state_space(model: Model) -> control.StateSpace:
     """
     from .statespace import state_space as build
 
-    return build(modal_network(model))
+    return build(modal_network(_model(model)))
 
 
 def reduce(
@@ -59,7 +59,9 @@ def reduce(
 
     if order is None and tolerance is None:
         tolerance = 1e-3
-    return reduction.reduce(modal_network(model), order, tolerance, _band(model, band), method)
+    times = {name: getattr(joint, "damping_time", None) for name, joint in _model(model).table.joints.items()}
+    known = {name: time for name, time in times.items() if time is not None}
+    return reduction.reduce(modal_network(model), order, tolerance, _band(model, band), method, known)
 
 
 def _band(model: Model, band: tuple[float, float] | None) -> tuple[float, float]:
@@ -91,7 +93,8 @@ def to_frd(
     from .statespace.frd import to_frd as build
 
     if isinstance(model, Model):
-        return build(frequency_response(model, frequencies_hz, outputs, inputs), smooth=smooth)
+        chosen = _names("outputs", outputs, 1), _names("inputs", inputs, 1)
+        return build(frequency_response(model, frequencies_hz, *chosen), smooth=smooth)
     if not (frequencies_hz is None and outputs is None and inputs is None):
         raise InputError("to_frd: a response has its frequencies, outputs and inputs; select from it with .sel instead")
     if not hasattr(model, "coords"):
@@ -129,11 +132,11 @@ def linearize(
     from .fmu.linearization import linearize as run
 
     return run(
-        Path(fmu),
-        inputs=inputs,
-        outputs=outputs,
-        start_values=start_values or {},
-        states=states or {},
+        _path(fmu),
+        inputs=_names("inputs", inputs),
+        outputs=_names("outputs", outputs),
+        start_values=_values("start_values", start_values),
+        states=_values("states", states),
         time=time,
         method=method,
         relative_step=relative_step,
@@ -170,14 +173,17 @@ def export_fmu(
     (`mount_1/force_uy` is `mount_1.force_uy`). Only such a system takes `units` by signal
     ({"mount_1/force_uy": "N"}), another `name`, a `description`, and the `step_size` (s) of the default experiment.
     Raises InputError for a sampled system (dt other than 0), and for a name, number or unit that cannot be used.
+
+    What `reduce` returned becomes the gearbox FMU of these coordinates, with its joints as parameters, like the model
+    itself with the same `order` or `tolerance`; after balanced truncation, and of parts of it, a linear system.
     """
+    target = _path(path)
     own = {"units": units, "name": name, "description": description, "step_size": step_size}
     others = {"schedule": schedule, "order": order, "tolerance": tolerance, "band": band}
-    is_model = isinstance(model, Model)
-    for key in (key for key, value in (own if is_model else others).items() if value is not None):
-        raise InputError(f"{key}: is for a {'python-control system' if is_model else 'Model'} only; leave it out")
     if not isinstance(model, Model):
-        return _export_system(model, Path(path), fmi, kind, documentation, own)
+        _refuse(others, "Model")
+        return _export_system(model, target, fmi, kind, documentation, own)
+    _refuse(own, "python-control system")
     from .fmu.export import export
     from .fmu.reduction import ReductionRequest
 
@@ -189,23 +195,69 @@ def export_fmu(
     shown = (model.frequency.start, model.frequency.stop)
     return export(
         model.system,
-        Path(path),
+        target,
         fmi=fmi,
         kind=kind,
         frequency=shown[0],
         documentation=documentation,
         band=shown,
         reduction=wanted,
-        schedule=None if schedule is None else _scheduled(model, [float(torque) for torque in schedule]),
+        schedule=None if schedule is None else _scheduled(model, _torques(schedule)),
     )
 
 
 def _export_system(system: Any, path: Path, fmi: str, kind: str, documentation: bool, settings: dict[str, Any]) -> Path:
+    from .fmu.export import export_reduced
     from .fmu.linear_export import export_system
+    from .statespace.reduction import ReducedStateSpace
 
     if kind != "native":
         raise InputError(f"kind: {kind!r} is for a Model; a python-control system becomes a native FMU")
+    if isinstance(system, ReducedStateSpace) and system.network is not None:
+        _refuse(settings, "controller or another linear system")
+        return export_reduced(system.network, system.certificate, path, fmi=fmi, documentation=documentation)
     return export_system(system, path, fmi=fmi, documentation=documentation, **settings)
+
+
+def _model(model: Any) -> Model:
+    if not isinstance(model, Model):
+        raise InputError(f"model: {type(model).__name__} is no Model; give what gearpath.load returns")
+    return model
+
+
+def _names(key: str, names: Any, least: int = 0) -> list[str] | None:
+    """Names as a list; None, which means all of them, stays."""
+    if names is None:
+        return None
+    found = [names] if isinstance(names, str) else list(names) if isinstance(names, Iterable) else None
+    if found is None or len(found) < least:
+        raise InputError(f"{key}: {names!r} names none; give one name or several, or leave it out for all")
+    return found
+
+
+def _values(key: str, values: Any) -> dict[str, Any]:
+    if values is not None and not isinstance(values, Mapping):
+        raise InputError(f'{key}: {values!r} gives no values by name; give them as {{"name": 1.0}}')
+    return dict(values or {})
+
+
+def _refuse(settings: Mapping[str, Any], purpose: str) -> None:
+    for key in (key for key, value in settings.items() if value is not None):
+        raise InputError(f"{key}: is for a {purpose} only; leave it out")
+
+
+def _path(path: Any) -> Path:
+    try:
+        return Path(path)
+    except TypeError as error:
+        raise InputError(f"path: {path!r} is no path; give the name of a file") from error
+
+
+def _torques(schedule: Any) -> list[float]:
+    try:
+        return [float(torque) for torque in schedule]
+    except (TypeError, ValueError) as error:
+        raise InputError(f"schedule: {schedule!r} are no torques; give two or more numbers in N m") from error
 
 
 def _scheduled(model: Model, torques: list[float]) -> Schedule:

@@ -48,6 +48,49 @@ def complete(model):
     return H.values[:, heard], gain[heard], [str(n) for n in np.array(H.output)[heard]]
 
 
+@pytest.mark.parametrize("fmi", ["2.0", "3.0"])
+def test_what_reduce_gave_is_the_same_fmu(model, tmp_path, fmi):
+    """Bit for bit the one that the model gives with the same tolerance: the gearbox, not a bare linear system."""
+    pytest.importorskip("control")
+    settings = {"fmi": fmi, "documentation": False}
+    one = gp.export_fmu(gp.reduce(model, tolerance=1e-3), tmp_path / "one.fmu", **settings)
+    two = gp.export_fmu(model, tmp_path / "two.fmu", tolerance=1e-3, **settings)
+    assert one.read_bytes() == two.read_bytes()
+
+
+def test_an_exchanged_joint_goes_into_the_fmu(model, tmp_path):
+    """K of `with_joint` is the start value, and the frequency response that of the model with it."""
+    pytest.importorskip("control")
+    stiff = [[1.2e9, 1.8e6], [1.8e6, 6e4]]
+    reduced = gp.reduce(model, tolerance=1e-3).with_joint("bearing_1", stiff)
+    path = gp.export_fmu(reduced, tmp_path / "it.fmu", documentation=False)
+    assert certificate(path)["error"] == reduced.certificate.error
+    fmu = Fmu(Fmu.unpack(path, tmp_path / "it"))
+    fmu.start()
+    assert list(fmu.get([f"bearing_1.stiffness[{i}]" for i in ("1,1", "1,2", "2,2")])) == [1.2e9, 1.8e6, 6e4]
+    H, gain, names = complete(model.replace({"joints.bearing_1.stiffness": stiff}))
+    assert (abs(transfers(fmu, names) - H).max(axis=0) / gain).max() <= reduced.certificate.error
+    fmu.free()
+
+
+def test_what_a_reduced_system_does_not_take(model, tmp_path):
+    """Names and units are the gearbox's own; a part of it, and a balanced one, are linear systems with theirs."""
+    pytest.importorskip("control")
+    reduced = gp.reduce(model, order=25)
+    with pytest.raises(gp.InputError, match="name: is for a controller or another linear system only"):
+        gp.export_fmu(reduced, tmp_path / "it.fmu", name="plant")
+    with pytest.raises(gp.InputError, match="order: is for a Model only"):
+        gp.export_fmu(reduced, tmp_path / "it.fmu", order=25)
+    with pytest.raises(gp.InputError, match="kind: 'python' is for a Model"):
+        gp.export_fmu(reduced, tmp_path / "it.fmu", kind="python")
+    with pytest.raises(gp.InputError, match=r"fmi: version '1\.0' is not available"):
+        gp.export_fmu(reduced, tmp_path / "it.fmu", fmi="1.0")
+    assert not list(tmp_path.iterdir())
+    for k, system in enumerate((reduced["casing/velocity_uy", "mesh/force"], gp.reduce(model, 10, method="balanced"))):
+        path = gp.export_fmu(system, tmp_path / f"{k}.fmu", name="plant", documentation=False)
+        assert b'modelName="plant"' in zipfile.ZipFile(path).read("modelDescription.xml")
+
+
 @pytest.mark.parametrize("version", [2, 3])
 def test_the_fmu_keeps_its_certificate_and_its_joints_are_tunable(model, version, tmp_path):
     path = gp.export_fmu(model, tmp_path / "small.fmu", fmi=f"{version}.0", tolerance=1e-3, documentation=False)

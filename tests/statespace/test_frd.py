@@ -105,6 +105,9 @@ def test_a_labelled_response_is_taken_too(model):
         ({"frequencies_hz": [-1.0]}, "-1 Hz is not allowed"),
         ({"outputs": "casing.velocity_yu"}, "did you mean 'casing.velocity_uy'"),
         ({"frequencies_hz": [10.0], "smooth": True}, "one frequency cannot be interpolated"),
+        ({"frequencies_hz": "a"}, "frequencies"),
+        ({"outputs": 5}, "outputs: 5 names none"),
+        ({"inputs": []}, r"inputs: \[\] names none; give one name or several, or leave it out for all"),
     ],
 )
 def test_requests_that_do_not_fit(model, options, match):
@@ -147,6 +150,7 @@ def test_feedback_through_several_signals(model, plant):
 
 def test_parts_keep_names_units_and_the_sign(model, loop):
     part = gp.to_frd(model, LINES, smooth=True)["mesh/velocity", "mesh/force"]
+    assert part.name == "gearbox_indexed"
     np.testing.assert_array_equal(part.frdata, loop.frdata)
     assert part.input_units == {"mesh/force": "N"}
     whole = gp.to_frd(model, LINES, "mesh.velocity", "mesh.force", smooth=True)

@@ -46,6 +46,21 @@ def test_feedback_of_collocated_velocity_adds_damping(plant):
     assert np.sum(loop.poles().real) < np.sum(plant.poles().real)
 
 
+@pytest.mark.parametrize("make", [gp.state_space, lambda model: gp.reduce(model, order=25)])
+def test_parts_keep_units_and_have_plain_names(model, make):
+    """Matplotlib takes the dollars of two names in a legend, python-control's `gearbox$indexed`, for a formula."""
+    whole = make(model)
+    part = whole[["casing/velocity_rz", "bearing_1/force_uy"], "mesh/force"]
+    assert part.name == f"{whole.name}_indexed"
+    assert control.c2d(part["casing/velocity_rz", "mesh/force"], 1e-5).name == f"{whole.name}_indexed_indexed_sampled"
+    assert part.output_units == {"casing/velocity_rz": "rad/s", "bearing_1/force_uy": "N"}
+    assert (part.input_units, part.state_units) == ({"mesh/force": "N"}, whole.state_units)
+    assert part.state_labels == whole.state_labels
+    s = 2j * np.pi * 700.0
+    rows = [whole.output_labels.index(name) for name in part.output_labels]
+    np.testing.assert_allclose(part(s), whole(s)[rows, 1:], rtol=1e-12)
+
+
 def test_forced_response_runs(plant):
     t = np.linspace(0.0, 1e-3, 101)
     response = control.forced_response(plant, t, np.vstack([0 * t, np.ones_like(t)]))

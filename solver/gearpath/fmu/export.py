@@ -13,6 +13,7 @@ from ..network.modal import ModalNetwork
 from ..network.records import Schedule
 from ..network.system import System
 from ..numerics.arrays import Real
+from ..statespace.reduced import Certificate
 from .documentation import BAND
 from .native import export_native
 from .python_kind import export_python
@@ -21,6 +22,7 @@ from .scheduled import check_schedule
 
 KINDS = ("native", "python")
 VERSIONS = ("2.0", "3.0")
+_PURPOSE = "Structure-borne noise power flow"
 SOURCELESS = "the python kind has no gear mesh source: [source] is left out; the native kind has it"
 
 
@@ -62,7 +64,7 @@ def export(
     check_target(path)
     settings = {
         "model_identifier": model_identifier(system.name),
-        "description": f"Structure-borne noise power flow of {system.name}",
+        "description": f"{_PURPOSE} of {system.name}",
         "frequency": frequency,
         "version": __version__,
     }
@@ -72,15 +74,43 @@ def export(
             more: dict[str, Any] = {"fmi": fmi, "documentation": documentation, "band": band}
             if reduction is not None:
                 reduced = reduced_for(network, reduction)
-                network = reduced.network
-                more["extra_files"] = {RECORD: record_of(reduced.certificate)}
-                settings["description"] = f"{settings['description']} ({reduced.certificate})"
-            return export_native(network, path, **settings, **more)  # type: ignore[arg-type]
+                network, more = reduced.network, {**more, **_certified(system.name, reduced.certificate)}
+            return export_native(network, path, **{**settings, **more})
         if system.source is not None:
             warnings.warn(SOURCELESS, stacklevel=3)
         return export_python(system, path, **settings)  # type: ignore[arg-type]
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror}); choose another place") from error
+
+
+def export_reduced(
+    network: ModalNetwork, certificate: Certificate, path: Path, *, fmi: str = "2.0", documentation: bool = True
+) -> Path:
+    """Write a network that has been reduced as a native FMU, over the band of its certificate, and return the path.
+
+    Raises InputError as `export`.
+    """
+    if fmi not in VERSIONS:
+        raise InputError(f"fmi: version {fmi!r} is not available; use one of: {', '.join(VERSIONS)}")
+    check_target(path)
+    settings: dict[str, Any] = {"fmi": fmi, "documentation": documentation, "band": certificate.band}
+    try:
+        return export_native(
+            network,
+            path,
+            model_identifier=model_identifier(network.name),
+            frequency=certificate.band[0],
+            version=__version__,
+            **settings,
+            **_certified(network.name, certificate),
+        )
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror}); choose another place") from error
+
+
+def _certified(name: str, certificate: Certificate) -> dict[str, Any]:
+    """What a reduced FMU says of its certificate."""
+    return {"description": f"{_PURPOSE} of {name} ({certificate})", "extra_files": {RECORD: record_of(certificate)}}
 
 
 def check_target(path: Path) -> None:

@@ -1,6 +1,7 @@
 """Export of a linear system, such as a controller, as a native FMU: the same runtime, matrices in place of modes."""
 
 from collections.abc import Mapping
+from numbers import Real as Number
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +36,13 @@ def export_system(
     """Write a python-control StateSpace or TransferFunction as an FMU to `path`; see `gearpath.export_fmu`."""
     if fmi not in VERSIONS:
         raise InputError(f"fmi: version {fmi!r} is not available; use one of: {', '.join(VERSIONS)}")
+    for key, text in (("name", name), ("description", description)):
+        if text is not None and not isinstance(text, str):
+            raise InputError(f"{key}: {text!r} is no text; give it in quotes")
+    if units is not None and not isinstance(units, Mapping):
+        raise InputError(f'units: {units!r} gives no units by name; give them as {{"mount_1/force_uy": "N"}}')
+    if step_size is not None and (isinstance(step_size, bool) or not isinstance(step_size, Number)):
+        raise InputError(f"step_size: {step_size!r} is not a number; give seconds")
     found = from_control(system, name, units)
     check_target(path)
     step = STEP if step_size is None else float(step_size)

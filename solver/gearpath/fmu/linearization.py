@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InputError, MissingExtraError
+from ..errors import InputError
 from ..numerics.arrays import Real
+from ..statespace.named import StateSpace
 from ..statespace.signals import signal_name, signal_names, with_units
 from .conformance.instance import CallError
 from .linearizing.jacobian import Jacobian, by_derivatives, by_differences, disagreement
@@ -19,20 +20,15 @@ from .linearizing.opened import opened
 from .linearizing.point import Point
 from .linearizing.task import Task, task_of
 
-try:
-    import control
-except ImportError as error:
-    raise MissingExtraError("python-control", "control") from error
-
 _DISAGREE, _ROUGH = 1e-4, 1e-4
 
 
-class Linearization(control.StateSpace):  # type: ignore[misc]  # python-control has no types
+class Linearization(StateSpace):
     """x' = dx0 + A (x - x0) + B (u - u0), y = y0 + C (x - x0) + D (u - u0): an FMU near an operating point.
 
-    As a `control.StateSpace` it relates the deviations from that point. `error` estimates the largest error of an
-    entry, relative to the largest of its row, both times the nominal value of their column: of the differences, or how
-    far the FMU's own derivatives and differences are apart.
+    As a `control.StateSpace` it relates the deviations from that point; units are as the FMU declares them, or "".
+    `error` estimates the largest error of an entry, relative to the largest of its row, both times the nominal value of
+    their column: of the differences, or how far the FMU's own derivatives and differences are apart.
     """
 
     method: str  # "derivatives" of the FMU, or "differences"
@@ -43,9 +39,6 @@ class Linearization(control.StateSpace):  # type: ignore[misc]  # python-control
     dx0: Real  # x' at the operating point; 0 at an equilibrium
     error: float
     warnings: tuple[str, ...]
-    input_units: dict[str, str]  # by signal, as the FMU declares them, "" where it does not
-    output_units: dict[str, str]
-    state_units: dict[str, str]
 
 
 def linearize(
@@ -122,7 +115,9 @@ def _differences(point: Point, relative_step: float, notes: list[str]) -> tuple[
     jacobian = by_differences(point, relative_step)
     moved = abs(jacobian.matrix) * jacobian.scales
     largest = moved.max(axis=1, initial=0.0, keepdims=True)
-    relative = jacobian.error * jacobian.scales / np.where(largest > 0.0, largest, np.inf)
+    # a row of zeros may be what rounding left of it: its error is related to the value itself
+    against = np.where(largest > 0.0, largest, abs(point.values())[:, None])
+    relative = jacobian.error * jacobian.scales / np.where(against > 0.0, against, np.inf)
     error = float(relative.max(initial=0.0))
     if error > _ROUGH:
         row, column = np.unravel_index(int(relative.argmax()), relative.shape)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import InputError, MissingExtraError
-from .signals import signal_name, signal_names, with_units
+from .signals import plain_name, signal_name, signal_names, with_units
 
 try:
     import control
@@ -42,7 +42,7 @@ class FrequencyResponse(control.FrequencyResponseData):  # type: ignore[misc]  #
         if not isinstance(part, control.FrequencyResponseData):
             return part
         names = {"inputs": part.input_labels, "outputs": part.output_labels}
-        return _like(self, part.frdata, names, part.name, f"Part of the frequency response of {self.name}")
+        return _like(self, part.frdata, names, plain_name(part.name), f"Part of the frequency response of {self.name}")
 
 
 def _like(

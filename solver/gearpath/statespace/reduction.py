@@ -2,24 +2,54 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
-import control
 import numpy as np
 
 from ..errors import InputError
+from ..joints.matrix_checks import check_matrix
 from ..network.modal import ModalNetwork
+from ..network.records import JointRows
 from ..numerics.arrays import Complex, Real
+from .named import StateSpace
 from .reduced import Certificate, Reduced
 from .reduced.balanced import balanced
 from .reduced.certificate import Comparison, certificate_of
-from .reduced.choice import certified, check_request, reduced_network
+from .reduced.choice import certified, check_request, check_tolerance, reduced_network
 from .reduced.passivity import is_positive_real
 from .signals import with_units
 from .twin import state_space
 
+if TYPE_CHECKING:
+    import control
 
-class ReducedStateSpace(control.StateSpace):  # type: ignore[misc]  # python-control has no types
+
+@dataclass(frozen=True)
+class Following:
+    """How the damping of joints follows their stiffness: C = T K where a joint has a damping time T, and eta K / w."""
+
+    damping_times: Mapping[str, float] = field(default_factory=dict)  # T, s
+    loss_times: Mapping[str, float] = field(default_factory=dict)  # eta / w, s, of loss factors made viscous
+
+    def exchanged(self, joint: JointRows, stiffness: Any, damping: Any) -> tuple[Real, Real]:
+        """K and C of a joint that gets other matrices, None where the present ones stay. Raises ModelError."""
+        lost = self.loss_times.get(joint.name, 0.0)
+        K, C = joint.stiffness, joint.damping - lost * joint.stiffness
+        if stiffness is not None:
+            K = _matrix(f"{joint.name}.stiffness", stiffness, joint.dofs)
+            C = self.damping_times[joint.name] * K if joint.name in self.damping_times else C
+        if damping is not None:
+            C = _matrix(f"{joint.name}.damping", damping, joint.dofs)
+        return K, C + lost * K
+
+    def without(self, name: str) -> Following:
+        """The same, but for one joint whose own damping is given."""
+        return Following({key: time for key, time in self.damping_times.items() if key != name}, self.loss_times)
+
+
+class ReducedStateSpace(StateSpace):
     """x' = A x + B u, y = C x + D u of few states: signals as of `gearpath.state_space`, and a `certificate`.
 
     `network` is the reduced network, whose joints are still explicit; None after balanced truncation.
@@ -28,42 +58,52 @@ class ReducedStateSpace(control.StateSpace):  # type: ignore[misc]  # python-con
     certificate: Certificate
     network: ModalNetwork | None
     _comparison: Comparison
+    _following: Following
 
     def with_joint(self, name: str, stiffness: Any = None, damping: Any = None) -> ReducedStateSpace:
         """The reduced model with other K (N/m ...) or C (N s/m ...) of one joint, certified anew for them.
 
-        The components' bases know nothing of the joints, so that nothing is reduced again. Raises InputError for an
-        unknown joint, a matrix of another size or not symmetric, and after balanced truncation, which has no joints.
+        As `Model.replace` takes them: a matrix on the joint's degrees of freedom, or a number along uy alone. Without
+        `damping`, C follows K by the joint's damping_time, if the model has one; a loss factor stays. The components'
+        bases know nothing of the joints, so that nothing is reduced again. Raises InputError for an unknown joint, a
+        matrix of another size, not symmetric or indefinite, and after balanced truncation, which leaves no joints.
         """
         if self.network is None:
             raise InputError("balanced truncation leaves no joint to exchange; reduce by rational_krylov, or again")
         joints = {joint.name: joint for joint in self.network.joints}
         if name not in joints:
             raise InputError(f"joints: there is no joint {name!r}; known: {', '.join(joints)}")
-        joint = joints[name]
-        K = _matrix(f"{name}.stiffness", stiffness, joint.stiffness)
-        C = _matrix(f"{name}.damping", damping, joint.damping)
+        K, C = self._following.exchanged(joints[name], stiffness, damping)
         complete = self._comparison.network.with_joint(name, K, C)
         comparison = Comparison(complete, self.certificate.band)
         found = certified(self.network.with_joint(name, K, C), comparison, self.certificate.method)
-        return _of_network(found)
+        return _of_network(found, self._following if damping is None else self._following.without(name))
 
 
 def reduce(
-    network: ModalNetwork, order: int | None, tolerance: float | None, band: tuple[float, float], method: str
+    network: ModalNetwork,
+    order: int | None,
+    tolerance: float | None,
+    band: tuple[float, float],
+    method: str,
+    damping_times: Mapping[str, float] | None = None,
 ) -> ReducedStateSpace:
-    """The reduced model of a network; see `gearpath.reduce`."""
+    """The reduced model of a network; see `gearpath.reduce`. `damping_times` (s) are those of joints whose C = T K."""
     check_request(network, order, tolerance, band, method)
     if method == "balanced":
         return _balanced(network.viscous(), order, tolerance, band)
     found = reduced_network(network, order=order, tolerance=tolerance, band=band, method=method)
-    return _of_network(found)
+    w = 2.0 * np.pi * network.loss_frequency
+    lossy = {joint.name: joint.loss_factor / w for joint in network.joints if joint.loss_factor}
+    return _of_network(found, Following(damping_times or {}, lossy))
 
 
-def _of_network(found: Reduced) -> ReducedStateSpace:
+def _of_network(found: Reduced, following: Following) -> ReducedStateSpace:
     whole = state_space(found.network)
     matrices = (whole.A, whole.B, whole.C, whole.D)
-    return _made(whole, matrices, whole.state_labels, found.network, found.certificate, found.comparison)
+    made = _made(whole, matrices, whole.state_labels, found.network, found.certificate, found.comparison)
+    made._following = following
+    return made
 
 
 def _made(
@@ -94,6 +134,8 @@ def _balanced(
 ) -> ReducedStateSpace:
     """Balanced truncation to 2 `order` states, or to as many as the tolerance needs."""
     whole, comparison = state_space(network), Comparison(network, band)
+    if tolerance is not None:
+        check_tolerance(comparison, tolerance)
     w = 2.0 * np.pi * np.linspace(*band, 400)
     gains = abs(comparison.exact(w)).max(axis=0)
     most = len(network.eigenvalues)
@@ -131,19 +173,17 @@ def _ports(network: ModalNetwork) -> list[tuple[int, int]]:
     return found
 
 
-def _matrix(key: str, value: Any, current: Real) -> Real:
-    """A symmetric matrix of the joint's size; `current` where none is given. Raises InputError."""
-    if value is None:
-        return current
+def _matrix(key: str, value: Any, dofs: tuple[str, ...]) -> Real:
+    """A symmetric matrix on the joint's degrees of freedom, of a number along uy alone. Raises InputError."""
     try:
         given = np.asarray(value)
-        matrix = np.atleast_2d(given.astype(float)) if given.dtype.kind in "iuf" else None
+        matrix = given.astype(float) if given.dtype.kind in "iuf" else None
     except (TypeError, ValueError):
         matrix = None
-    if matrix is None:
-        raise InputError(f"{key}: is no matrix of real numbers; give {current.shape[0]} rows of as many numbers")
-    if matrix.shape != current.shape:
-        raise InputError(f"{key}: shape {matrix.shape} does not fit; give {current.shape}")
-    if not np.isfinite(matrix).all() or abs(matrix - matrix.T).max() > 1e-12 * abs(matrix).max():
-        raise InputError(f"{key}: is not symmetric or not finite; give a symmetric matrix of real numbers")
-    return matrix
+    if matrix is not None and matrix.ndim == 0 and "uy" in dofs:
+        matrix = np.diag([float(matrix) if dof == "uy" else 0.0 for dof in dofs])
+    square = matrix is not None and matrix.ndim == 2 and matrix.shape[0] == matrix.shape[1]
+    if matrix is None or not square or not np.isfinite(matrix).all():
+        raise InputError(f"{key}: is no matrix of finite real numbers; give one on {', '.join(dofs)}")
+    check_matrix(tuple(tuple(row) for row in matrix.tolist()), dofs, key)
+    return np.asarray(0.5 * (matrix + matrix.T))

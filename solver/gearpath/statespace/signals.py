@@ -22,6 +22,11 @@ def signal_names(variables: Sequence[str]) -> list[str]:
     return list(names)
 
 
+def plain_name(name: str) -> str:
+    """A system's name without the dollar sign of `gearbox$indexed`, two of which Matplotlib takes for a formula."""
+    return name.replace("$", "_")
+
+
 def with_units(
     system: Any, about: str, inputs: Sequence[str], outputs: Sequence[str], states: Sequence[str] = ()
 ) -> None:

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..errors import MissingExtraError
 from ..network.modal import ModalNetwork
 from ..network.time_twin import time_twin
 from .signals import signal_name, with_units
 
 if TYPE_CHECKING:
-    import control
+    from .named import StateSpace
 
 _STATE_UNIT = "J^0.5"
 
 
-def state_space(network: ModalNetwork) -> control.StateSpace:
+def state_space(network: ModalNetwork) -> StateSpace:
     """x' = A x + B u, y = C x + D u: all loads as inputs, all linear outputs (SI units, as the FMU variables).
 
     States come in two halves, mode by mode: `component/mode_k/x`, the modal displacement times the mode's angular
@@ -23,16 +22,14 @@ def state_space(network: ModalNetwork) -> control.StateSpace:
     mass-normalised: both are in J^0.5, and half the squared norm of an elastic mode's pair is its energy. Units of all
     signals are in `input_units`, `output_units`, `state_units` and the object's own docstring.
     """
-    try:
-        import control
-    except ImportError as error:
-        raise MissingExtraError("python-control", "control") from error
+    from .named import StateSpace
+
     network = network.viscous()  # what can be simulated: its modes name the states
     twin = time_twin(network)
     modes = [
         f"{name}/mode_{k + 1}" for name, block in network.components.items() for k in range(block.stop - block.start)
     ]
-    plant = control.StateSpace(
+    plant = StateSpace(
         twin.A,
         twin.B,
         twin.C,

@@ -60,6 +60,11 @@ def test_wrong_systems(case, tmp_path):
         ({"units": {"act_1": "lbf"}}, "the unit 'lbf' is not understood"),
         ({"step_size": 0.0}, "step 0.0 s are no experiment"),
         ({"step_size": float("nan")}, "no experiment"),
+        ({"step_size": "a"}, "step_size: 'a' is not a number; give seconds"),
+        ({"step_size": [1e-5]}, "step_size: .* is not a number"),
+        ({"name": 5}, "name: 5 is no text"),
+        ({"description": 5}, "description: 5 is no text"),
+        ({"units": "N"}, "units: 'N' gives no units by name"),
     ],
     ids=str,
 )
@@ -80,6 +85,23 @@ def test_a_model_takes_nothing_of_it(tmp_path):
     for settings in ({"units": {}}, {"name": "x"}, {"description": "x"}, {"step_size": 1e-4}):
         with pytest.raises(InputError, match=f"{next(iter(settings))}: is for a python-control system only"):
             gp.export_fmu(model, tmp_path / "it.fmu", **settings)
+
+
+@pytest.mark.parametrize(
+    ("settings", "sentence"),
+    [
+        ({"schedule": 5.0}, "schedule: 5.0 are no torques"),
+        ({"schedule": ["a", "b"]}, "are no torques; give two or more numbers in N m"),
+        ({"order": "a"}, "order: 'a' is not a number of coordinates"),
+        ({"tolerance": "a"}, "tolerance: 'a' is not a relative error"),
+        ({"order": 30, "band": "ab"}, "band: 'ab' is not a pair"),
+        ({"path": 5}, "path: 5 is no path; give the name of a file"),
+    ],
+)
+def test_numbers_that_are_none(settings, sentence, tmp_path):
+    with pytest.raises(InputError, match=sentence):
+        gp.export_fmu(gp.load("models/gearbox.toml"), **{"path": tmp_path / "it.fmu"} | settings)
+    assert not list(tmp_path.iterdir())
 
 
 def test_names_of_python_control_itself():

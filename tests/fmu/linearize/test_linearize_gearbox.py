@@ -50,6 +50,18 @@ def test_transfers_and_poles_are_those_of_the_state_space(fmus, plant, fmi, meth
     compare(found, plant)
 
 
+def test_names_may_be_those_of_python_control(fmus):
+    """A slash for a dot, in all four places."""
+    point = {"start_values": {"mesh.force": 10.0}, "states": {"gear_train.mode_5.v": 0.02}}
+    asked = {"inputs": ["mesh.force"], "outputs": ["bearing_1.force_uy", "gear_train.mode_5.v"]}
+    slashed = {key: [name.replace(".", "/") for name in names] for key, names in asked.items()}
+    slashed |= {k: {name.replace(".", "/"): x for name, x in values.items()} for k, values in point.items()}
+    dotted, same = gp.linearize(fmus["2.0"], **asked, **point), gp.linearize(fmus["2.0"], **slashed)
+    np.testing.assert_array_equal(np.hstack([same.C, same.D]), np.hstack([dotted.C, dotted.D]))
+    np.testing.assert_array_equal(same.x0, dotted.x0)
+    assert dotted.u0 == same.u0 == [10.0]
+
+
 @pytest.mark.parametrize("fmi", ["2.0", "3.0"])
 def test_both_methods_agree_at_a_nonlinear_point(fmus, fmi):
     """Powers are products of forces and velocities; alpha is a function of the input `frequency`."""

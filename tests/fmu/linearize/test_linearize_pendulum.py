@@ -41,6 +41,25 @@ def test_matrices_are_the_closed_form(pendulums, fmi, derivatives, point):
     assert found.error < 1e-6
 
 
+@pytest.mark.parametrize("step", [1.0, 1e-2, 1e-4, 1e-6])
+def test_the_error_knows_what_rounding_takes(pendulums, step):
+    """The smaller the first step, the fewer digits: never more of them lost than `error` says."""
+    case = POINTS["swinging"]
+    found = gp.linearize(pendulums(), method="differences", relative_step=step, **at(case, 2))
+    expected = np.hstack(case.matrices()[:2])
+    true = abs(np.hstack([found.A, found.B]) - expected) / abs(expected).max(axis=1, keepdims=True)
+    assert true.max() <= 10.0 * found.error < 1e-6
+
+
+def test_differences_that_vanish_show_in_the_error(pendulums, monkeypatch):
+    """Steps that rounding swallows leave rows of zeros, which are not right because nothing moves."""
+    monkeypatch.setattr("gearpath.fmu.linearizing.task._SMALLEST", 0.0)
+    with pytest.warns(UserWarning, match="do not converge"):
+        found = gp.linearize(pendulums(), method="differences", relative_step=1e-30, **at(POINTS["swinging"], 2))
+    assert not found.A.any()
+    assert found.error > 1.0
+
+
 @pytest.mark.parametrize("fmi", [2, 3])
 def test_operating_point_is_told(pendulums, fmi):
     """x0, u0, y0 and dx0: the tangent at a neighbouring point meets the model to second order."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from itertools import product
@@ -66,6 +66,12 @@ def continuous(fmu: Fmu, variable: Variable) -> bool:
     return variable.variability == "continuous" and reachable
 
 
+def dotted(given: object, known: Container[str]) -> str:
+    """A variable's name, which may be given as python-control has it, a slash for every dot."""
+    name = str(given)
+    return name if name in known else name.replace("/", ".")
+
+
 def hint(name: str, known: Iterable[str]) -> str:
     """What to do about a name that is not known."""
     names = list(known)
@@ -83,12 +89,13 @@ def _chosen(fmu: Fmu, kind: str, variables: Sequence[Variable], names: str | Ite
     whole |= {alias: whole[v.name] for v in variables for alias, _ in v.aliases}
     known = {signal.name: [signal] for elements in whole.values() for signal in elements} | whole
     found = []
-    for name in [names] if isinstance(names, str) else names:
+    for given in [names] if isinstance(names, str) else names:
+        name = dotted(given, known)
         if name not in known:
-            variable = fmu.by_name.get(str(name))
+            variable = fmu.by_name.get(name)
             if variable is not None:
                 what = f"{variable.name!r} is a {variable.variability} {variable.causality} of type {variable.type}"
                 raise InputError(f"{kind}s: {what}; only continuous floats can be an {kind}: {hint('', known)}")
-            raise InputError(f"{kind}s: the FMU has no {kind} {str(name)!r}; {hint(str(name), known)}")
+            raise InputError(f"{kind}s: the FMU has no {kind} {str(given)!r}; {hint(name, known)}")
         found += [signal for signal in known[name] if signal not in found]
     return found

@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import InputError
 from ..conformance.contents import FLOATS, Fmu, Variable
 from ..conformance.instance import Instance
-from .signals import hint
+from .signals import dotted, hint
 
 _WHOLE_2 = {"Integer": "Integer", "Enumeration": "Integer"}
 _WHOLE_3 = {f"{sign}Int{bits}" for sign in ("", "U") for bits in (8, 16, 32, 64)}
@@ -21,11 +21,12 @@ Start = tuple[Variable, str, list[Any]]
 def starts(fmu: Fmu, values: Mapping[str, Any]) -> list[Start]:
     """Variables, the setter of each and its values, element by element. Raises InputError for what cannot be set."""
     found = []
-    for name, value in values.items():
-        variable = fmu.by_name.get(str(name))
+    for given, value in values.items():
+        name = dotted(given, fmu.by_name)
+        variable = fmu.by_name.get(name)
         if variable is None:
             known = [v.name for v in fmu.variables if _settable(v)]
-            raise InputError(f"start_values: the FMU has no variable {str(name)!r}; {hint(str(name), known)}")
+            raise InputError(f"start_values: the FMU has no variable {str(given)!r}; {hint(name, known)}")
         if not _settable(variable):
             what = f"{variable.variability} {variable.causality}"
             raise InputError(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from numbers import Real as Number
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +14,11 @@ from ..conformance.contents import Variable, real, true
 from .opened import KIND, Unpacked
 from .point import Point
 from .run import run
-from .signals import Signal, hint, inputs_of, outputs_of, signals, states_of
+from .signals import Signal, dotted, hint, inputs_of, outputs_of, signals, states_of
 from .start import Start, starts
 
 METHODS = ("auto", "derivatives", "differences")
+_SMALLEST = 1e-6  # relative step: the steps shrink from there, and rounding grows as they do
 
 
 @dataclass(frozen=True)
@@ -98,22 +100,26 @@ def _checked_method(path: Path, unpacked: Unpacked, method: str) -> str:
 
 
 def _checked_step(step: float) -> float:
-    if not (isinstance(step, int | float) and 0.0 < step <= 1.0):
-        raise InputError(f"relative_step: {step!r} is not a number above 0 and up to 1")
+    if not (isinstance(step, Number) and _SMALLEST <= step <= 1.0):
+        raise InputError(
+            f"relative_step: {step!r} is not a number from {_SMALLEST:g} to 1; in smaller steps differences drown in "
+            "rounding"
+        )
     return float(step)
 
 
 def _checked_time(time: float, start: float) -> float:
-    if not (isinstance(time, int | float) and math.isfinite(time) and time >= start):
+    if not (isinstance(time, Number) and math.isfinite(time) and time >= start):
         raise InputError(f"time: {time!r} is not a number of seconds from the FMU's start time, {start:g} s, on")
     return float(time)
 
 
 def _checked_states(states: Mapping[str, float], known: list[str]) -> dict[str, float]:
     found = {}
-    for name, value in states.items():
+    for given, value in states.items():
+        name = dotted(given, known)
         if name not in known:
-            raise InputError(f"states: the FMU has no state {name!r}; {hint(str(name), known)}")
+            raise InputError(f"states: the FMU has no state {given!r}; {hint(name, known)}")
         try:
             found[name] = float(value)
         except (TypeError, ValueError) as problem:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ...errors import ModelError
 from ...joints import Port
+from ...joints.matrix_checks import check_matrix
 from ..build_bearings import catalogue_of
 from ..build_structures import build_plate
 from ..hints import hint
@@ -15,7 +16,6 @@ from ..supplied import shared_dofs
 from ..tables import FileTable
 from ..wording import show
 from .bearings import check_bearing
-from .matrices import check_matrix
 from .structures import as_model_error
 
 # for each axis of an offset: which rotation moves which translation of its far end

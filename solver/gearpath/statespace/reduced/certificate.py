@@ -3,16 +3,19 @@
     error = max over pairs (output, input) of  max_f |H_r - H| / max_f |H|        f in the band
 
 Both maxima are looked for on a grid that has every resonance of both models in steps of a fraction of its width, and
-refined where they lie until they stand. What the grid still hides is covered by a margin of 1 %.
+refined where they lie until they stand. What the grid still hides is covered by a margin of 1 %. Far below all modes
+the responses of a machine that turns freely lose their digits, as 1 / f^2: what is left of them at the lower end of the
+band is measured, and added for both models.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from ...network.modal import ModalNetwork
-from ...network.records import Output
+from ...network.records import JointRows, Output
 from ...network.response import frequency_response
 from ...network.time_twin import time_twin
 from ...numerics.arrays import Complex, Real
@@ -27,6 +30,10 @@ _STANDS = 1e-4  # relative change of the error after which it is not refined fur
 _ROUNDS = 8
 _PEAKS = 100  # that are refined at a time, the highest ones
 _THINNED = 4
+_LOWEST = 8  # lines at the lower end of the band, on which rounding is measured: its size is accidental
+_UNIT = 1.1  # of the joints' degrees of freedom in a second solution
+_BOTH = 4.0  # both models round, and either up to twice as much as the two solutions are apart
+_NOTED = 0.1, 1e-5  # part of an error that is rounding, and size of that, from which on the certificate says so
 _SILENT = 1e-9  # a gain below this part of the largest of its kind is a zero of the machine's symmetry, not a response
 
 
@@ -43,6 +50,7 @@ class Certificate:
     passive: bool  # positive real between forces and velocities of the same places
     method: str
     band: tuple[float, float]  # Hz
+    note: str = ""  # why the order is not the one asked for, or the error cannot be smaller
 
     def __str__(self) -> str:
         found = "passive" if self.passive else "NOT passive"
@@ -50,6 +58,7 @@ class Certificate:
             f"{self.method}: order {self.order} of {self.complete}, error {self.error:.2g} of the largest gain "
             f"from {self.band[0]:g} to {self.band[1]:g} Hz (worst at {self.frequency:.5g} Hz, {self.pair[0]} from "
             f"{self.pair[1]}), {'stable' if self.stable else 'NOT stable'}, {found}"
+            + (f"; {self.note}" if self.note else "")
         )
 
 
@@ -82,6 +91,20 @@ class Comparison:
             self._kept.update(zip(missing.tolist(), found))
         return np.array([self._kept[w] for w in omega.tolist()])
 
+    @cached_property
+    def rounding(self) -> float:
+        """Relative error that rounding may make of a deviation, from responses where the band begins in other units.
+
+        P -> a P, K -> K / a^2, C -> C / a^2, g -> g / a: the same machine, rounded otherwise if a is no power of 2.
+        """
+        grid = self._grid(np.zeros(0, complex), _THINNED)
+        H = self.exact(grid)
+        other = H.copy()
+        network = replace(self.network, joints=tuple(_in_units(joint, _UNIT) for joint in self.network.joints))
+        other[:_LOWEST] = frequency_response(network, grid[:_LOWEST], self.outputs, network.loads)
+        other[:_LOWEST, [output.quantity == "force" for output in self.outputs]] *= _UNIT
+        return float(_BOTH * self._relative(H, other).max())
+
     def over(self, omega: Real, network: ModalNetwork) -> float:
         """The deviation of a reduced network on the lines omega (rad/s) alone."""
         found = frequency_response(network, omega, linear_outputs(network), network.loads)
@@ -108,7 +131,7 @@ class Comparison:
             last, worst = worst, self._worst(grid, H, found)
             if abs(worst.error - last.error) <= _STANDS * last.error:
                 break
-        return Deviation(_MARGIN * worst.error, worst.frequency, worst.output, worst.input)
+        return Deviation(_MARGIN * worst.error + self.rounding, worst.frequency, worst.output, worst.input)
 
     def _grid(self, own_poles: Complex, thinned: int = 1) -> Real:
         w = 2.0 * np.pi * np.array(self.band)
@@ -142,6 +165,17 @@ class Comparison:
         return np.unique(np.concatenate([peaks, gains]))
 
 
+def _in_units(joint: JointRows, a: float) -> JointRows:
+    """A joint whose degrees of freedom are counted in units a times smaller."""
+    return replace(
+        joint,
+        source=a * joint.source,
+        receiver=a * joint.receiver,
+        stiffness=joint.stiffness / a**2,
+        damping=joint.damping / a**2,
+    )
+
+
 def linear_outputs(network: ModalNetwork) -> tuple[Output, ...]:
     """All outputs but powers."""
     return tuple(output for output in network.outputs if output.quantity != "power")
@@ -152,21 +186,35 @@ def poles(network: ModalNetwork) -> Complex:
     return np.asarray(np.linalg.eigvals(time_twin(network, outputs=()).A))
 
 
-def certify(network: ModalNetwork, comparison: Comparison, method: str, *, stable: bool, passive: bool) -> Certificate:
+def certify(
+    network: ModalNetwork, comparison: Comparison, method: str, *, stable: bool, passive: bool, note: str = ""
+) -> Certificate:
     """The certificate of a reduced network."""
 
     def respond(omega: Real) -> Complex:
         return frequency_response(network, omega, linear_outputs(network), network.loads)
 
     found = comparison.deviation(respond, poles(network))
-    return certificate_of(found, comparison, method, len(network.eigenvalues), stable=stable, passive=passive)
+    return certificate_of(
+        found, comparison, method, len(network.eigenvalues), stable=stable, passive=passive, note=note
+    )
 
 
 def certificate_of(
-    found: Deviation, comparison: Comparison, method: str, order: int, *, stable: bool, passive: bool
+    found: Deviation,
+    comparison: Comparison,
+    method: str,
+    order: int,
+    *,
+    stable: bool,
+    passive: bool,
+    note: str = "",
 ) -> Certificate:
     """The certificate that states a deviation."""
-    network = comparison.network
+    network, floor = comparison.network, comparison.rounding
+    if floor > max(_NOTED[0] * found.error, _NOTED[1]):
+        low = comparison.band[0]
+        note = f"{note}; " * bool(note) + f"{floor:.2g} of the error is rounding at {low:g} Hz: begin the band higher"
     return Certificate(
         found.error,
         found.frequency,
@@ -177,4 +225,5 @@ def certificate_of(
         passive,
         method,
         comparison.band,
+        note,
     )

@@ -97,21 +97,49 @@ def reduced_network(
     comparison = Comparison(complete, band)
     if order is None:
         assert tolerance is not None
+        check_tolerance(comparison, tolerance)
         return _by_tolerance(complete, comparison, bases, tolerance, method)
     if method == "craig_bampton" and order < bases.least:
         raise InputError(f"order: {order} is below the {bases.least} constraint modes; give at least so many")
-    return _of_order(complete, comparison, bases, min(int(order), bases.most), method)
+    network = congruent(complete, bases.bases(min(int(order), bases.most)))
+    return certified(network, comparison, method, _note(int(order), len(network.eigenvalues), bases))
 
 
-def certified(network: ModalNetwork, comparison: Comparison, method: str) -> Reduced:
+def check_tolerance(comparison: Comparison, tolerance: float) -> None:
+    """Refuse a tolerance that rounding alone exceeds. Raises InputError."""
+    floor, low = comparison.rounding, comparison.band[0]
+    if floor > tolerance:
+        raise InputError(
+            f"tolerance: {tolerance:g} cannot be certified from {low:g} Hz on, where rounding alone is {floor:.2g} of "
+            "the responses; begin the band higher"
+        )
+
+
+def certified(network: ModalNetwork, comparison: Comparison, method: str, note: str = "") -> Reduced:
     """A reduced network with what is certain of it."""
     passive = is_passive_network(network)
     stable = passive or bool((poles(network).real <= 0.0).all())
-    return Reduced(network, certify(network, comparison, method, stable=stable, passive=passive), comparison)
+    return Reduced(network, certify(network, comparison, method, stable=stable, passive=passive, note=note), comparison)
 
 
-def _of_order(complete: ModalNetwork, comparison: Comparison, bases: Bases, order: int, method: str) -> Reduced:
-    return certified(congruent(complete, bases.bases(order)), comparison, method)
+def _note(asked: int, found: int, bases: Bases) -> str:
+    """What to know of a reduction to a given order."""
+    notes = []
+    if asked > bases.most:
+        notes.append(f"order {asked} was asked for: there are no more than {bases.most} coordinates")
+    elif found > asked:
+        notes.append(f"order {asked} was asked for: equal coordinates, such as rigid motions, stay together")
+    elif found < asked:
+        notes.append(f"order {asked} was asked for: equal coordinates stay together, and no more differ in this band")
+    if found < bases.least:
+        notes.append(f"the components have {bases.least} modes up to the end of the band: give at least this order")
+    return "; ".join(notes)
+
+
+def _of_order(
+    complete: ModalNetwork, comparison: Comparison, bases: Bases, order: int, method: str, note: str = ""
+) -> Reduced:
+    return certified(congruent(complete, bases.bases(order)), comparison, method, note)
 
 
 def _by_tolerance(
@@ -138,7 +166,8 @@ def _by_tolerance(
         middle = (low + high) // 2
         low, high = (low, middle) if error(middle) <= _ROUGHLY * tolerance else (middle, high)
     while True:
-        found = _of_order(complete, comparison, bases, high, method)
+        note = f"no smaller order keeps {tolerance:g}" if high >= bases.most else ""
+        found = _of_order(complete, comparison, bases, high, method, note)
         if found.certificate.error <= tolerance or high >= bases.most:
             return found
         high += 1

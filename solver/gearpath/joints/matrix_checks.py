@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ...errors import ModelError
-from ...joints.joint import Matrix
-from ...numerics.arrays import Real
+from ..errors import ModelError
+from ..numerics.arrays import Real
+from .joint import Matrix
 
 ROUNDING = 1e-9  # relative to the matrix with a unit diagonal, since units mix
 
