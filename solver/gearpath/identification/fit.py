@@ -17,6 +17,7 @@ import numpy as np
 from ..errors import AccuracyError
 from ..numerics.arrays import Complex, Real
 from ..numerics.lines import chunks
+from .bend import bend, refusal, too_stiff
 from .condition import Linearised, linearise
 from .measurement import Measurement
 from .parameters import Unknowns
@@ -38,6 +39,7 @@ class Estimate:
     squares: Squares  # for mobilities of relative noise 1, or of the known deviations
     noise: float  # that is left, relative; in parts of the deviations where those are known
     discarded: dict[int, str]  # line -> why it is not used
+    bend: Real  # (q,): |G d| of the error d of every unknown for noise 1, see bend.py
     strangers: Squares  # the same equations with stiffness between different joints as further unknowns
 
 
@@ -67,19 +69,25 @@ class _Lines:
     def step(self, theta: Real) -> tuple[Squares, Real, Complex]:
         """Least squares, its solution, and the mobilities that go with it."""
         blocks, kept = [], []
-        for part, at, s, w, A, dual in self._whitened(theta, None):
+        for part, at, s, w, A, L in self._whitened(theta, None):
             blocks.append((A.reshape(-1, A.shape[2]), w.ravel()))
-            kept.append((part, at, s, dual))
+            both = np.concatenate([w[:, :, None], A], axis=2)
+            kept.append((part, at, s, np.linalg.solve(L.conj().swapaxes(1, 2), both)))  # S^-1 [w A]
         squares = Squares.of(blocks)
         change, Y = squares.solution(), self.Y.copy()
         for part, at, s, dual in kept:
             Y[part] = self.data.mobility[part] - at.back(dual @ np.append(1.0, change), s)
         return squares, change, Y
 
+    def bend(self, theta: Real, moves: Real) -> Real:
+        """Of moves of theta, the columns of (q, k), as (k,)."""
+        pieces = ((self.data.omega[part], self.Y[part], A) for part, *_, A, _ in self._whitened(theta, None))
+        return bend(pieces, self.unknowns, self.data.size, moves)
+
     def _whitened(
         self, theta: Real, strangers: Real | None
     ) -> Iterator[tuple[slice, Linearised, Real, Complex, Complex, Complex]]:
-        """Of each piece: the lines, the condition, s, L^-1 w, L^-1 A and S^-1 [w A]."""
+        """Of each piece: the lines, the condition, s, L^-1 w, L^-1 A and L."""
         for part, at in self.near(theta):
             Y, Y0, iw = self.Y[part], self.data.mobility[part], 1j * self.data.omega[part, None, None]
             s = self.data.on(part).unit_deviation(Y)
@@ -89,12 +97,11 @@ class _Lines:
             if strangers is not None:
                 columns.append(at.of_impedance(strangers) / iw)
             try:
-                L = np.linalg.cholesky(at.covariance(s))
+                L: Complex = np.asarray(np.linalg.cholesky(at.covariance(s)), complex)
             except np.linalg.LinAlgError as error:
-                raise _astray() from error
+                raise unsettled(self.data, self.unknowns, self.data.first_noise) from error
             x: Complex = np.asarray(np.linalg.solve(L, np.concatenate(columns, axis=2)), complex)
-            dual: Complex = np.asarray(np.linalg.solve(L.conj().swapaxes(1, 2), x), complex)
-            yield part, at, s, x[:, :, 0], x[:, :, 1:], dual
+            yield part, at, s, x[:, :, 0], x[:, :, 1:], L
 
 
 def fit(data: Measurement, unknowns: Unknowns, theta: Real, scale: Real) -> Estimate:
@@ -106,10 +113,11 @@ def fit(data: Measurement, unknowns: Unknowns, theta: Real, scale: Real) -> Esti
     used = np.setdiff1d(np.arange(data.lines), list(discarded))
     lines = _Lines(data.on(used), unknowns, scale)
     for count in range(_STEPS):
-        if 2 * len(used) * unknowns.size**2 <= unknowns.count:
+        if len(used) < unknowns.least_lines:
             raise AccuracyError(
-                f"identification: noise hides the joints on {len(discarded)} of {data.lines} lines; measure with less "
-                "noise, or more lines away from the machine's resonances"
+                f"identification: noise hides the joints on {len(discarded)} of {data.lines} lines, or they are too stiff "
+                "for their neighbours at this noise; measure with less noise, or more lines away from the machine's "
+                "resonances"
             )
         squares, change, Y = lines.step(theta)
         theta = theta + change
@@ -124,8 +132,9 @@ def fit(data: Measurement, unknowns: Unknowns, theta: Real, scale: Real) -> Esti
         error = squares.noise() * np.sqrt(np.diagonal(squares.covariance()))
         if count and ((np.abs(change) <= SETTLED * error).all() or squares.small(change, theta, ROUNDING)):
             strangers = lines.squares(theta, unknowns.strangers()[0])
-            return Estimate(theta, squares, squares.noise(), dict(sorted(discarded.items())), strangers)
-    raise _astray()
+            bent = lines.bend(theta, squares.moves())
+            return Estimate(theta, squares, squares.noise(), dict(sorted(discarded.items())), bent, strangers)
+    raise unsettled(data, unknowns, squares.noise())
 
 
 def _choose(data: Measurement, unknowns: Unknowns, theta: Real, scale: Real) -> tuple[Real, dict[int, str]]:
@@ -147,9 +156,16 @@ def _choose(data: Measurement, unknowns: Unknowns, theta: Real, scale: Real) -> 
     return theta, {int(k): f"hidden by noise ({unsteady[k]:.2g} > {UNSTEADY})" for k in hidden}
 
 
-def _astray() -> AccuracyError:
+def unsettled(data: Measurement, unknowns: Unknowns, noise: float) -> AccuracyError:
+    """Why steps may not settle: joints that do not visibly deform, or all that else makes the condition fail."""
+    noise = data.known_noise or noise
+    stiff = too_stiff(data, unknowns, noise)
+    if stiff.any():
+        return refusal(data, unknowns, stiff, noise)
     return AccuracyError(
-        "identification: the steps did not settle; noise hides the joints on these lines, or the two parts move in too "
-        "few ways to tell these joints apart: measure with less noise or on more lines, or give `without`, the "
-        "mobilities of the machine without the joints"
+        "identification: the steps did not settle; a joint between the two parts is missing from `joints`, rows and "
+        "columns are not in the order of `joints` (all source sides, then all receiver sides), noise hides the joints "
+        "or they are too stiff for their neighbours at this noise, or the two parts move in too few ways to tell these "
+        "joints apart: measure with less noise or on more lines, or give `without`, the mobilities of the machine "
+        "without the joints"
     )

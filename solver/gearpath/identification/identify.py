@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import gammaincc
 
-from ..errors import InputError
+from ..errors import AccuracyError, InputError
+from ..numerics.arrays import Real
+from .bend import check_deformed, widening
 from .checks import check_mobilities, checked_joints, checked_lines, checked_matrix, checked_noise
 from .fit import Estimate, fit
 from .known import fit_known
@@ -16,7 +18,7 @@ from .measurement import Measurement
 from .parameters import Unknowns
 from .passive import nearest_passive
 from .record import CrossTalk, IdentifiedJoint, JointIdentification
-from .start import starting_values
+from .start import starting_values, stiff_values
 
 _MISFIT = 1.3  # times the known noise: more is not noise
 _UNLIKELY = 1e-3
@@ -36,16 +38,31 @@ def identify(
     F, n = len(omega), unknowns.size
     Y = checked_matrix("mobility", mobility, F, 2 * n)
     check_mobilities(Y, port_names(unknowns.joints))
-    if 2 * F * n**2 <= unknowns.count:
-        raise InputError(f"frequencies: {F} lines are too few for {unknowns.count} unknown entries; measure more lines")
+    if unknowns.least_lines > F:
+        raise InputError(
+            f"frequencies: {F} lines are too few for {unknowns.count} unknown entries and the size of the noise; "
+            f"measure at least {unknowns.least_lines}"
+        )
     data = Measurement.of(omega, Y, checked_noise(noise, F, 2 * n))
+    if data.known_noise is not None:
+        check_deformed(data, unknowns, data.known_noise)
     if without is None:
-        own = np.median(np.sqrt(np.abs(np.einsum("fii->fi", data.mobility))), axis=0)
-        scale = np.sqrt(own[:n] * own[n:])
-        found = fit(data, unknowns, starting_values(data, unknowns, scale), scale)
+        scale = np.sqrt(data.size[:n] * data.size[n:])
+        found = _fit(data, unknowns, scale)
     else:
         found = fit_known(data, unknowns, checked_matrix("without", without, F, 2 * n))
     return _record(data, unknowns, found)
+
+
+def _fit(data: Measurement, unknowns: Unknowns, scale: Real) -> Estimate:
+    """From the usual starting values, or those for stiff joints where the first lead nowhere."""
+    try:
+        return fit(data, unknowns, starting_values(data, unknowns, scale), scale)
+    except AccuracyError as error:
+        try:
+            return fit(data, unknowns, stiff_values(data, unknowns, scale), scale)
+        except (AccuracyError, np.linalg.LinAlgError):
+            raise error from None
 
 
 def port_names(joints: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
@@ -59,7 +76,12 @@ def _record(data: Measurement, unknowns: Unknowns, found: Estimate) -> JointIden
     noise = found.noise if trusted is None else max(trusted, found.noise)
     covariance = noise**2 * found.squares.covariance()
     lost = found.squares.lost()
-    error = np.where(lost, np.inf, np.sqrt(np.diagonal(covariance)))
+    wider = widening(unknowns, noise * found.bend)
+    stiff = check_deformed(data, unknowns, known or found.noise)
+    rigid = np.tile(stiff[unknowns.rows] | stiff[unknowns.columns], 2)
+    told = ~lost & ~rigid & np.isfinite(wider)
+    error = np.full(len(wider), np.inf)
+    error[told] = (wider * np.sqrt(np.diagonal(covariance)))[told]
     values, errors = unknowns.split(found.theta), unknowns.split(error)
     joints, start, m = {}, 0, len(unknowns.rows)
     for name, dofs in unknowns.joints.items():
@@ -73,7 +95,7 @@ def _record(data: Measurement, unknowns: Unknowns, found: Estimate) -> JointIden
     talk = _cross_talk(unknowns, found, found.noise if known is None else max(known, found.noise))
     used = np.setdiff1d(np.arange(data.lines), list(found.discarded))
     f = data.omega / (2.0 * np.pi)
-    undetermined = _entries(unknowns, lost)
+    undetermined, unbounded = _entries(unknowns, lost), _entries(unknowns, ~lost & ~told)
     misfit = None if known is None else found.noise / known
     return JointIdentification(
         joints=joints,
@@ -86,7 +108,7 @@ def _record(data: Measurement, unknowns: Unknowns, found: Estimate) -> JointIden
         undetermined=undetermined,
         cross_talk=talk,
         covariance=covariance,
-        notes=tuple(_notes(joints, misfit, talk, undetermined, len(found.discarded) / data.lines)),
+        notes=tuple(_notes(joints, misfit, talk, undetermined, unbounded, len(found.discarded) / data.lines)),
     )
 
 
@@ -123,6 +145,7 @@ def _notes(
     misfit: float | None,
     talk: CrossTalk | None,
     undetermined: tuple[str, ...],
+    unbounded: tuple[str, ...],
     discarded: float,
 ) -> list[str]:
     notes = []
@@ -131,17 +154,21 @@ def _notes(
             f"{len(undetermined)} entries are not determined, for the two parts move in too few ways at these joints: "
             + ", ".join(undetermined)
         )
-    if misfit is not None and misfit > _MISFIT:
+    strange = misfit is not None and misfit > _MISFIT
+    if strange:
         notes.append(
             f"{misfit:.3g} times the known noise is left over: a connection beside these joints, nonlinearity, or "
             "joints that are not K and C"
         )
+    if unbounded:
+        why = "with so much left over" if strange else "joint too stiff for its neighbours at this noise:"
+        notes.append(f"{why} the deformation is not seen well enough to bound {', '.join(unbounded)}")
     if talk is not None and talk.probability < _UNLIKELY and talk.value > _VISIBLE:
         notes.append(
             f"stiffness between {talk.pair[0]} and {talk.pair[1]}, {talk.value:.2g} of their own, would explain the "
             f"data better (probability {talk.probability:.1g} by chance): the measurement misses a connection"
         )
-    if all(np.trace(joint.stiffness) < 0.0 for joint in joints.values()):
+    if all(np.trace(joint.stiffness_interval()[1]) < 0.0 for joint in joints.values()):
         notes.append("all stiffness is negative: phasors must turn with e^(+i w t); conjugate those of e^(-i w t)")
     for name, joint in joints.items():
         for what, matrix, passive in (

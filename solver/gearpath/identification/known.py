@@ -15,6 +15,7 @@ import numpy as np
 from ..errors import AccuracyError
 from ..numerics.arrays import Complex, Real
 from ..numerics.lines import chunks
+from .bend import bend
 from .fit import ROUNDING, SETTLED, Estimate
 from .measurement import Measurement
 from .parameters import Unknowns
@@ -25,18 +26,20 @@ _STEPS = 60
 
 def fit_known(data: Measurement, unknowns: Unknowns, without: Complex) -> Estimate:
     """The estimate from mobilities `without` the joints, (F, N, N). Raises AccuracyError where steps do not settle."""
-    theta = _start(data, unknowns, without)
+    theta, nothing = _start(data, unknowns, without), unknowns.basis()[:0]
     for _ in range(_STEPS):
-        squares = Squares.of(_rows(data, unknowns, without, theta, unknowns.basis()[:0]))
+        squares = _squares(data, unknowns, without, theta, nothing)
         change = squares.solution()
         theta = theta + change
         error = squares.noise() * np.sqrt(np.diagonal(squares.covariance()))
         if (np.abs(change) <= SETTLED * error).all() or squares.small(change, theta, ROUNDING):
-            strangers = Squares.of(_rows(data, unknowns, without, theta, unknowns.strangers()[0]))
-            return Estimate(theta, squares, squares.noise(), {}, strangers)
+            strangers = _squares(data, unknowns, without, theta, unknowns.strangers()[0])
+            pieces = ((data.omega[p], Y, A) for p, Y, A, _ in _rows(data, unknowns, without, theta, nothing))
+            bent = bend(pieces, unknowns, data.size, squares.moves())
+            return Estimate(theta, squares, squares.noise(), {}, bent, strangers)
     raise AccuracyError(
         "identification: the steps did not settle; check that `without` are mobilities of this machine without the "
-        "joints, at the same ports in the same order"
+        "joints, at the same ports in the same order, and that no joint is too stiff for its neighbours at this noise"
     )
 
 
@@ -60,10 +63,15 @@ def _start(data: Measurement, unknowns: Unknowns, without: Complex) -> Real:
     return Squares.of([(A.reshape(-1, A.shape[3]), b.ravel())]).solution()
 
 
+def _squares(data: Measurement, unknowns: Unknowns, without: Complex, theta: Real, strangers: Real) -> Squares:
+    pieces = _rows(data, unknowns, without, theta, strangers)
+    return Squares.of((A.reshape(-1, A.shape[2]), b.ravel()) for _, _, A, b in pieces)
+
+
 def _rows(
     data: Measurement, unknowns: Unknowns, without: Complex, theta: Real, strangers: Real
-) -> Iterator[tuple[Complex, Complex]]:
-    """Slopes and rest of all entries i <= j, in parts of their deviations."""
+) -> Iterator[tuple[slice, Complex, Complex, Complex]]:
+    """Lines, Y, and slopes and rest of all entries i <= j, in parts of their deviations."""
     n = unknowns.size
     i, j = np.triu_indices(2 * n)
     basis = np.concatenate([unknowns.basis(), strangers])
@@ -76,4 +84,4 @@ def _rows(
         slope = -np.einsum("fia,qab,fbj->fijq", columns, basis, rows, optimize=True)[:, i, j] / s[:, :, None]
         elastic = slope / (1j * omega)[:, None, None]
         A = np.concatenate([elastic[:, :, :m], slope[:, :, :m], elastic[:, :, m:]], axis=2)
-        yield A.reshape(-1, A.shape[2]), ((Y - data.mobility[part])[:, i, j] / s).ravel()
+        yield part, Y, A, (Y - data.mobility[part])[:, i, j] / s

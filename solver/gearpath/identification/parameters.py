@@ -8,6 +8,7 @@ acts on another.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -15,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..numerics.arrays import Complex, Real
+
+_SPARE = 20  # equations more than unknowns: Student's 95 % interval is then 6 % wider than the normal one
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,11 @@ class Unknowns:
     def count(self) -> int:
         """2 m: how many numbers are sought."""
         return 2 * len(self.rows)
+
+    @property
+    def least_lines(self) -> int:
+        """Lines with enough equations, 2 n^2 real ones each, for the unknowns and for judging the noise."""
+        return math.ceil((self.count + _SPARE) / (2 * self.size**2))
 
     def basis(self) -> Real:
         """E, (m, n, n)."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..numerics.arrays import Real
 
-_NORMAL_95 = 1.959963984540054
+NORMAL_95 = 1.959963984540054
 
 
 @dataclass(frozen=True)
@@ -30,11 +30,11 @@ class IdentifiedJoint:
 
     def stiffness_interval(self) -> tuple[Real, Real]:
         """Lower and upper end of the 95 % confidence interval of every entry of K."""
-        return self.stiffness - _NORMAL_95 * self.stiffness_error, self.stiffness + _NORMAL_95 * self.stiffness_error
+        return self.stiffness - NORMAL_95 * self.stiffness_error, self.stiffness + NORMAL_95 * self.stiffness_error
 
     def damping_interval(self) -> tuple[Real, Real]:
         """Lower and upper end of the 95 % confidence interval of every entry of C."""
-        return self.damping - _NORMAL_95 * self.damping_error, self.damping + _NORMAL_95 * self.damping_error
+        return self.damping - NORMAL_95 * self.damping_error, self.damping + NORMAL_95 * self.damping_error
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class JointIdentification:
     condition: float  # of the scaled equations; above 1e4 some combination of entries is poorly seen
     undetermined: tuple[str, ...]  # entries that no amount of such data determines, such as "bearing_1.stiffness[1,2]"
     cross_talk: CrossTalk | None  # None for a single joint
-    covariance: Real  # (2 m, 2 m) of K's and then C's upper triangles, joint by joint
+    covariance: Real  # (2 m, 2 m) of K's and then C's upper triangles, linearised: without the widening of bend.py
     notes: tuple[str, ...]
 
     def changes(self) -> dict[str, list[list[float]]]:
@@ -79,7 +79,7 @@ class JointIdentification:
         for name, joint in self.joints.items():
             for i, j in zip(*np.triu_indices(len(joint.dofs))):
                 K, C = joint.stiffness[i, j], joint.damping[i, j]
-                dK, dC = _NORMAL_95 * joint.stiffness_error[i, j], _NORMAL_95 * joint.damping_error[i, j]
+                dK, dC = NORMAL_95 * joint.stiffness_error[i, j], NORMAL_95 * joint.damping_error[i, j]
                 entry = f"{joint.dofs[i]},{joint.dofs[j]}"
                 text.append(f"{name:12} {entry:8} {K:12.5g} {dK:11.2g} {C:12.4g} {dC:11.2g}")
         text.append(

@@ -76,6 +76,12 @@ class Squares:
         inverse = np.linalg.pinv(self.triangle, rcond=_LOST) / self.size[:, None]
         return np.asarray(0.5 * inverse @ inverse.T)
 
+    def moves(self) -> Real:
+        """(q, q): how x moves, by column, while one of it moves by its standard deviation for E|e|^2 = 1."""
+        covariance = self.covariance()
+        deviation = np.sqrt(np.diagonal(covariance))
+        return np.asarray(covariance / np.where(deviation > 0.0, deviation, 1.0))
+
     def lost(self) -> NDArray[np.bool_]:
         """(q,): which unknowns take part in a direction that the equations do not see."""
         _, values, Vh = np.linalg.svd(self.triangle)
