@@ -153,6 +153,24 @@ def test_a_universal_file_says_units_on_its_axes(tmp_path):
     assert_is_the_mobility(component(tmp_path, table))
     write_uff(tmp_path, H, (1, 2, 2), labels=("g", "N"))
     assert "unit_motion: is missing; the file says g on an axis, and 1 of SI units" in refusal(tmp_path, table)
+    with pytest.warns(UserWarning, match='unit_motion: "m/s.2" counts, though the file says g on an axis'):
+        assert_is_the_mobility(component(tmp_path, {**table, "unit_motion": "m/s^2"}))
+
+
+@pytest.mark.parametrize(
+    ("labels", "length", "words"),
+    [
+        (("mV", "N"), None, 'unit_motion: is missing; the file says "mV" on an axis'),
+        (("m/s/s", "EU"), None, 'unit_force: is missing; the file says "EU" on an axis'),
+        (("mm/s", "N"), 1.0, "which is none of the units m/s^2, mm/s^2, g, in/s^2"),
+    ],
+)
+def test_units_that_are_not_known_are_asked_for(tmp_path, labels, length, words):
+    write_uff(tmp_path, mobility() * (1j * W)[:, None, None], (1, 2, 2), length=length, labels=labels)
+    table = {"file": "data.unv", "ports": {"seat": {"ux": "1:ux", "uy": "2:uy"}, "foot": {"uy": "3:uy"}}}
+    assert words in refusal(tmp_path, table)
+    key = words.split(":")[0] if ":" in words else "unit_motion"
+    assert_is_the_mobility(component(tmp_path, {**table, key: 1.0}))
 
 
 @pytest.mark.parametrize(
@@ -160,8 +178,8 @@ def test_a_universal_file_says_units_on_its_axes(tmp_path):
     [
         (1j * W, "quantity: is mobility, but no passive structure has such driving points; they would do as accel"),
         (1 / (1j * W), "they would do as receptance"),
-        (None, "as with phasors e^(-i w t); conjugate the data"),
-        (np.full(len(W), -1.0), "at seat.ux, seat.uy, foot.uy the driving point gives off power"),
+        (None, "would do with phasors e^(-i w t): conjugate the data"),
+        (np.full(len(W), -1.0), "would do with force and response of opposite signs"),
     ],
 )
 def test_data_that_are_not_what_they_are_said_to_be(tmp_path, factor, words):

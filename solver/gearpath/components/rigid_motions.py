@@ -10,7 +10,7 @@ import scipy.sparse.linalg
 from ..errors import InputError
 from ..numerics.arrays import Real, Sparse
 
-_ROUNDING = 1e-15  # part of an entry by which an assembled matrix kept in double precision is rounded
+ROUNDING = 1e-15  # part of an entry by which an assembled matrix kept in double precision is rounded
 _SINGLE = 3e-8  # the same, of one kept in single precision
 _PRINTED = range(6, 15)  # significant digits of matrices that were printed; fewer are round numbers, and exact
 _CLEAR = 3.0  # a motion is certainly resisted beyond so many times what rounding makes
@@ -19,14 +19,16 @@ _SMALL = 200  # coordinates of a sparse matrix that is treated as dense
 _MOST = 48  # motions looked for in a sparse matrix
 
 
-def rigid_motions(stiffness: Real | Sparse) -> Real:
+def rigid_motions(stiffness: Real | Sparse, given: int | None = None) -> Real:
     """A basis (n, r) of the null space of K (n, n), dense or sparse, as far as the digits of its entries tell.
+
+    Where the number of rigid motions is `given`, all that may be rigid: `given` of them and what the digits hide.
 
     With a unit diagonal, v^T K v = nu of an eigenvector. Entries rounded by the part d of themselves make a resistance
     up to d |v|^T |K| |v| where there is none: a motion that meets no more is rigid. d is that of double or single
     precision, or of the digits that all entries were printed with. No mass is needed, and a structure that is held
     softly keeps its resistance. Raises InputError where K is negative in some motion, where motions lie between rigid
-    and resisted, and where 48 and more of a sparse structure are rigid.
+    and resisted and no number is given, where more are given, and where 48 and more of a sparse structure are rigid.
     """
     diagonal = stiffness.diagonal()
     if diagonal.min() < 0.0:
@@ -38,30 +40,43 @@ def rigid_motions(stiffness: Real | Sparse) -> Real:
     scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
     scaled, precision = _scaled(stiffness, scale), rounding_of(stiffness)
     values, vectors = _softest(scaled, max(_SHIFT, 10.0 * precision))
-    limit = precision * np.einsum("ik,ik->k", abs(vectors), np.asarray(abs(scaled) @ abs(vectors)))
+    limit = rounding_resistance(scaled, vectors, precision)
     soft = values < 10.0 * _CLEAR * limit
-    values[soft] = _resistance(stiffness, scale[:, None] * vectors[:, soft])
+    values[soft] = resistance(stiffness, scale[:, None] * vectors[:, soft])
     if (values < -_CLEAR * limit).any():
         raise InputError(
             f"stiffness: is negative in some motion (eigenvalue {values.min():.2g} with a unit diagonal); "
             "give the stiffness of an unloaded structure"
         )
-    rigid = values <= limit
-    between = int(np.count_nonzero((values > limit) & (values <= _CLEAR * limit)))
-    if between:
+    rigid, doubtful = values <= limit, values <= _CLEAR * limit
+    if given is not None:
+        rigid = doubtful
+        if rigid.sum() < given:
+            raise InputError(
+                f"rigid_motions: {given} is given, but the stiffness resists all but {int(rigid.sum())} motions; "
+                "give this number"
+            )
+    elif (doubtful & ~rigid).any():
         raise InputError(
-            f"stiffness: {between} motions beside {int(rigid.sum())} rigid ones meet hardly more resistance than "
-            f"entries rounded by {precision:.1g} of themselves make; export it with more digits"
+            f"stiffness: {int((doubtful & ~rigid).sum())} motions beside {int(rigid.sum())} rigid ones meet hardly "
+            f"more resistance than entries rounded by {precision:.1g} of themselves make; give the number of motions "
+            "that nothing resists as rigid_motions (6 of a free body, 0 of a held one), or export it with more digits"
         )
     if rigid.all() and len(values) < int(stiffness.shape[0]):
         raise InputError(f"stiffness: {len(values)} motions or more do not deform it; connect its parts")
     return np.asarray(scale[:, None] * vectors[:, rigid])
 
 
-def _resistance(K: Real | Sparse, motions: Real) -> Real:
+def resistance(K: Real | Sparse, motions: Real) -> Real:
     """v^T K v of each motion, (k,), without the rounding of the eigensolver, which may exceed that of the entries."""
     V = motions.astype(np.longdouble)
     return np.asarray((V * np.asarray(K @ V)).sum(axis=0), dtype=float)
+
+
+def rounding_resistance(K: Real | Sparse, motions: Real, precision: float = ROUNDING) -> Real:
+    """The most v^T K v, (k,), that entries rounded by the part `precision` of themselves make of nothing."""
+    V = abs(motions)
+    return np.asarray(precision * (V * np.asarray(abs(K) @ V)).sum(axis=0))
 
 
 def rounding_of(matrix: Real | Sparse) -> float:
@@ -70,7 +85,7 @@ def rounding_of(matrix: Real | Sparse) -> float:
     entries = entries[entries != 0.0]
     mantissa = entries / 10.0 ** np.floor(np.log10(abs(entries)))
     digits = next((d for d in range(1, 15) if (abs(mantissa - np.round(mantissa, d - 1)) <= 1e-14).all()), 15)
-    printed = 0.3 * 10.0 ** (1 - digits) if digits in _PRINTED else _ROUNDING
+    printed = 0.3 * 10.0 ** (1 - digits) if digits in _PRINTED else ROUNDING
     return max(printed, _SINGLE) if digits >= _PRINTED[0] and _is_single(entries) else printed
 
 

@@ -115,9 +115,9 @@ def fit(data: Measurement, unknowns: Unknowns, theta: Real, scale: Real) -> Esti
     for count in range(_STEPS):
         if len(used) < unknowns.least_lines:
             raise AccuracyError(
-                f"identification: noise hides the joints on {len(discarded)} of {data.lines} lines, or they are too stiff "
-                "for their neighbours at this noise; measure with less noise, or more lines away from the machine's "
-                "resonances"
+                f"identification: noise hides the joints on {len(discarded)} of {data.lines} lines, or they are too "
+                "stiff for their neighbours at this noise; measure with less noise, or more lines away from the "
+                "machine's resonances"
             )
         squares, change, Y = lines.step(theta)
         theta = theta + change

@@ -126,23 +126,37 @@ def _scale(table: MeasuredTable, file: FrfFile, quantity: str, dofs: list[str], 
 
 def _unit(given: str | float | None, label: str, stated: float | None, known: Mapping[str, float], key: str) -> float:
     """A unit in SI: as the table gives it, else as the file does, by its dataset of units or on its axis."""
-    if given is not None:
-        return known[given] if isinstance(given, str) else given
     written = {_plain(name): name for name in known}.get(_plain(label))
-    if written is None or stated is None:
-        return known[written] if written else stated or 1.0
-    if abs(known[written] / stated - 1.0) > _SAME:
+    if given is not None:
+        chosen = known[given] if isinstance(given, str) else given
+        if written and _differ(known[written], chosen):
+            warnings.warn(f"{key}: {show(given)} counts, though the file says {label} on an axis", stacklevel=2)
+        return chosen
+    if label and written is None and (stated is None or _plain(label) in _UNITS):
+        raise ModelError(
+            key,
+            f"is missing; the file says {show(label)} on an axis, which is none of the units {', '.join(known)}",
+            "check the quantity, and give one of these or a number of SI units",
+        )
+    if written and stated is not None and _differ(known[written], stated):
         raise ModelError(
             key,
             f"is missing; the file says {label} on an axis, and {stated:g} of SI units by its dataset 164",
             f"give it as {show(written)} or as that number",
         )
-    return stated
+    return known[written] if written else stated or 1.0
+
+
+def _differ(one: float, other: float) -> bool:
+    return abs(one / other - 1.0) > _SAME
 
 
 def _plain(label: str) -> str:
-    """A unit as it is compared: "m/s^2", "(m/s**2)" and "M/S2" are one."""
-    return label.lower().translate(str.maketrans("", "", " ()[]^*"))
+    """A unit as it is compared: "m/s^2", "(m/s**2)", "m/s/s" and "M/S2" are one."""
+    return label.lower().translate(str.maketrans("", "", " ()[]^*")).replace("/s/s", "/s2")
+
+
+_UNITS = {_plain(name) for words in (FORCES, *MOTIONS.values()) for name in words}
 
 
 def _check_driving_points(omega: Real, mobility: Complex, quantity: str, channels: list[str], key: str) -> None:

@@ -6,10 +6,11 @@ joint forces g are solved together,
     [ K + i w C - w^2 M    B^T   ] [ u ]   [ f ]
     [ (K_p + i w C_p) B    -I    ] [ g ] = [ -(K_p + i w C_p) B d e ]
 
-(with loss factors (1 + i eta) K and (1 + i eta) K_p)
-so that joint forces keep their digits across stiff joints, and joint stiffness is never inverted. The solution is
-refined with residuals in extended precision (where the platform has it): free shafts at low frequency are badly
-conditioned in physical coordinates, and a reference must be better than what it judges.
+(with loss factors (1 + i eta) K and (1 + i eta) K_p; a measured component has the rows u + X B^T g = X f of its
+receptances X = Y / (i w), which are not inverted), so that joint forces keep their digits across stiff joints, and
+joint stiffness is never inverted. The solution is refined with residuals in extended precision (where the platform
+has it): free shafts at low frequency are badly conditioned in physical coordinates, and a reference must be better
+than what it judges.
 """
 
 from collections.abc import Sequence
@@ -22,12 +23,11 @@ import scipy.sparse
 import scipy.sparse.linalg
 from numpy.typing import NDArray
 
-from ..components import Measured, Structure
-from ..errors import AccuracyError
+from ..components import Structure
 from ..numerics.arrays import Complex, Real
 from .assemble import Network
 from .power import ratio
-from .reference_parts import Part, load_of, reference_parts
+from .reference_parts import Part, load_of, massless, measured_parts, reference_parts
 
 Extended = NDArray[np.longdouble]
 ExtendedComplex = NDArray[np.clongdouble]
@@ -49,14 +49,11 @@ class Reference:
 def reference_solution(network: Network, omega: Real) -> Reference:
     """Solve the assembled machine at each angular frequency (rad/s), one pivoted factorisation a line.
 
-    Raises AccuracyError where damping has no matrix, as modal damping of a plate or frame (`reference_parts`), and for
-    measured components.
+    Raises AccuracyError where damping has no matrix, as modal damping of a plate or frame (`reference_parts`).
     """
-    if any(isinstance(item, Measured) for item in network.system.components.values()):
-        raise AccuracyError(
-            "a measured component has no matrices, so that nothing can be solved in another way; leave the check out"
-        )
     parts = reference_parts(network)
+    measured = measured_parts(network, parts, omega)
+    parts = [massless(part) if k in measured else part for k, part in enumerate(parts)]
     motion = scipy.sparse.hstack([part.motion for part in parts], format="csc")
     sparse = any(scipy.sparse.issparse(part.structure.mass) for part in parts)
     M, K, H, C = (_sparse_blocks if sparse else _extended_blocks)(parts)
@@ -71,20 +68,24 @@ def reference_solution(network: Network, omega: Real) -> Reference:
     )
     load = load_of(network, parts, next(item for item in network.loads if item.name == network.excitation))
     n_p, n = B.shape
+    starts = np.cumsum([0, *(part.motion.shape[1] for part in parts)])
+    receptances = [(slice(starts[k], starts[k + 1]), X) for k, X in measured.items()]
     # the unknown forces are counted in units of a joint's stiffness times a unit motion: keeps the pivots sensible
     unit = max(float(abs(K_p).max()), 1.0)
     force, velocity = np.empty((n_p, len(omega)), complex), np.empty((motion.shape[0], len(omega)), complex)
     input_power, path_power = np.empty(len(omega)), np.empty((n_p, len(omega)))
     for k, w in enumerate(omega):
         Z = ((1.0 + 1j * losses[:, None]) * K_p + 1j * w * C_p) / unit
-        dynamic = K + 1j * (H + w * C) - w**2 * M
+        dynamic, right = K + 1j * (H + w * C) - w**2 * M, (unit * B.T).astype(complex)
         b = np.zeros(n + n_p, complex)
         if load.mesh_displacement is None:
             b[:n] = load.column
         else:
             b[:n] = w**2 * load.column
             b[n:] = -Z @ (B @ load.mesh_displacement)
-        x = (_solve_sparse if sparse else _solve_refined)(dynamic, unit * B.T, Z @ B, b)
+        for rows, X in receptances:
+            right[rows], b[rows] = X[:, :, k] @ right[rows], X[:, :, k] @ b[rows]
+        x = (_solve_sparse if sparse else _solve_refined)(dynamic, right, Z @ B, b)
         g, v = unit * x[n:], 1j * w * x[:n]  # powers are small beside |v||F| at low frequency: taken before rounding
         input_power[k] = 0.5 * (load.column @ v).real * (w**2 if load.is_transmission_error else 1.0)
         if load.mesh_displacement is not None:  # the physical motion, and the power of e against the joints
@@ -97,7 +98,7 @@ def reference_solution(network: Network, omega: Real) -> Reference:
     return Reference(force, velocity, input_power, path_power, ratio(path_power[carried].sum(axis=0), input_power))
 
 
-def _solve_refined(dynamic: ExtendedComplex, right: Real, lower: Complex, b: Complex) -> ExtendedComplex:
+def _solve_refined(dynamic: ExtendedComplex, right: Complex, lower: Complex, b: Complex) -> ExtendedComplex:
     """Solve [dynamic, right; lower, -I] x = b with iterative refinement, residuals in extended precision."""
     A = np.block([[dynamic, right], [lower, -np.eye(len(lower))]])
     factors = scipy.linalg.lu_factor(A.astype(complex))
@@ -110,7 +111,7 @@ def _solve_refined(dynamic: ExtendedComplex, right: Real, lower: Complex, b: Com
     return x
 
 
-def _solve_sparse(dynamic: Any, right: Real, lower: Complex, b: Complex) -> Complex:
+def _solve_sparse(dynamic: Any, right: Complex, lower: Complex, b: Complex) -> Complex:
     """The same for sparse structures, in double precision."""
     rows = [
         [dynamic, scipy.sparse.csc_array(right)],

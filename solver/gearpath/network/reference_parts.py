@@ -17,10 +17,10 @@ import scipy.sparse
 from numpy.typing import NDArray
 from scipy.sparse import issparse
 
-from ..components import Modes, Structure, modes
+from ..components import Measured, Modes, Structure, modes
 from ..components.mobility import damping_matrix
 from ..errors import AccuracyError
-from ..numerics.arrays import Real
+from ..numerics.arrays import Complex, Real
 from .assemble import Network
 from .records import Load
 from .rigid import Group, groups
@@ -49,6 +49,23 @@ def reference_parts(network: Network) -> list[Part]:
     """
     found = groups(network.rigid, network.structures)
     return [_joined(network, group) if group.joints else _single(network, group.components[0]) for group in found]
+
+
+def measured_parts(network: Network, parts: Sequence[Part], omega: Real) -> dict[int, Complex]:
+    """Receptances Y / (i w) (m, m, F) of the measured components, by the place of their part: none is joined rigidly."""
+    return {
+        k: item.at(omega) / (1j * omega)
+        for name, item in network.system.components.items()
+        if isinstance(item, Measured)
+        for k, part in enumerate(parts)
+        if part.motion[network.blocks[name]].nnz
+    }
+
+
+def massless(part: Part) -> Part:
+    """The part with the unit matrix as its stiffness, and nothing else: its rows are those of u itself."""
+    s = part.structure
+    return replace(part, structure=replace(s, mass=0.0 * s.mass, stiffness=s.mass, rigid_modes=s.rigid_modes[:, :0]))
 
 
 def load_of(network: Network, parts: Sequence[Part], load: Load) -> Load:
