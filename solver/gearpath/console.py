@@ -32,12 +32,12 @@ err = Console(stderr=True, highlight=False, soft_wrap=True)
 
 @contextmanager
 def notes(to: Console = out) -> Iterator[None]:
-    """Print warnings as notes, without the line of the program that they come from."""
+    """Print warnings as notes, each once, without the line of the program that they come from."""
     with warnings.catch_warnings(record=True) as noted:
         warnings.simplefilter("always", UserWarning)
         yield
-    for note in noted:
-        to.print(f"note: {escape(str(note.message))}")
+    for text in dict.fromkeys(str(note.message) for note in noted):
+        to.print(f"note: {escape(text)}")
 
 
 @contextmanager
@@ -57,7 +57,7 @@ def _stop(sentence: str) -> NoReturn:
 
 
 def load_with(path: Path, settings: Sequence[str], *, noted: bool = True) -> Model:
-    """The model of a file with `key=value` settings applied, values in TOML; notes on its bearings go to stderr."""
+    """The model of a file with `key=value` settings applied, values in TOML; notes on it go to stderr."""
     from .modelfile import load
 
     changes: dict[str, Any] = {}
@@ -66,9 +66,9 @@ def load_with(path: Path, settings: Sequence[str], *, noted: bool = True) -> Mod
         if not separator or not key.strip():
             raise InputError(f"--set {setting}: is not KEY=VALUE; write for example --set components.casing.mass=14")
         changes[key.strip()] = _toml_value(text.strip())
-    model = load(path).replace(changes) if changes else load(path)
-    if noted:
-        with notes(err):
+    with notes(err) if noted else nullcontext():
+        model = load(path).replace(changes) if changes else load(path)
+        if noted:
             _ = model.system  # the operating point of its bearings
     return model
 

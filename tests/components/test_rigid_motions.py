@@ -173,7 +173,8 @@ def test_a_beam_without_rotary_inertia_at_ports_that_turn(count, dense, toleranc
     ends = [0, 1, last - 1, last]
     made = free_matrices(*(m.toarray() if dense else m for m in (M, K)), ends)
     ports = {"a": {"uy": 0, "rx": 1}, "b": {"uy": last - 1, "rx": last}}
-    component = Matrices(made.mass, made.stiffness, made.rigid_modes, ports, {}, 0.0, eta)
+    component = Matrices(made.mass, made.stiffness, made.rigid_modes, ports, {}, 0.0, eta, made.motion)
+    assert not dense or len(made.mass) == count + 3  # a mass at each node, and the turning of both ends
     structure, basis = solve_component(component, ("uy", "rx"), (("a", "a"), ("b", "b")), (), 3000.0, None)
     L = np.vstack([structure.ports[name][[1, 3]] for name in ("a", "b")]) @ basis.shapes
     assert dense or len(basis.eigenvalues) < 60
@@ -231,5 +232,40 @@ def test_rounding_that_hides_a_soft_motion_asks_for_the_number():
         free_matrices(M, few_digits(K, 7))
     made = free_matrices(M, few_digits(K, 7), rigid=2)
     assert made.rigid_modes.shape[1] == 2
-    with pytest.raises(InputError, match="rigid_motions: the stiffness resists all but 2 motions"):
+    with pytest.raises(InputError, match="rigid_motions: 3 is given, but the stiffness resists all but 2 motions"):
         free_matrices(M, K, rigid=3)
+
+
+def test_a_given_number_is_obeyed_where_the_digits_do_not_tell():
+    """Also of motions between rigid and resisted, which are refused without it."""
+    K, M, first = cantilever(100)
+    few = few_digits(K, 7)
+    with pytest.raises(InputError, match=r"meet hardly more resistance .* as rigid_motions"):
+        free_matrices(M, few)
+    held = free_matrices(M, few, rigid=0)
+    assert held.rigid_modes.shape[1] == 0
+    np.testing.assert_array_equal(held.stiffness, few)
+    free, inertia, _ = cantilever(100, free=1)
+    made = free_matrices(inertia, few_digits(free, 7), rigid=2)
+    frequencies = np.sqrt(scipy.linalg.eigh(made.stiffness, made.mass, eigvals_only=True)[2:4]) / (2 * np.pi)
+    assert frequencies[0] == pytest.approx(6.3635 * first, rel=2e-3)  # 22.37 / 3.516: free and clamped, Euler
+
+
+@pytest.mark.parametrize(("free", "digits", "given"), [(1, 17, 0), (1, 17, 1), (1, 9, 0), (0, 17, 1), (0, 10, 1)])
+def test_a_given_number_that_the_stiffness_contradicts(free, digits, given):
+    K, M, _ = cantilever(100, free)
+    with pytest.raises(InputError, match=rf"rigid_motions: {given} is given, but .* give "):
+        free_matrices(M, K if digits == 17 else few_digits(K, digits), rigid=given)
+
+
+def test_a_soft_structure_of_round_entries_is_not_free_without_a_question():
+    """A clamped chain of beams of EI / h^3 = 1234567 N/m, 0.06 Hz: its entries have seven digits, and are exact."""
+    unit = np.array([[12.0, 6.0, -12.0, 6.0], [6.0, 4.0, -6.0, 2.0], [-12.0, -6.0, 12.0, -6.0], [6.0, 2.0, -6.0, 4.0]])
+    K, M = np.zeros((202, 202)), np.diag(np.tile([1.0, 0.05], 101))
+    for k in range(100):
+        K[2 * k : 2 * k + 4, 2 * k : 2 * k + 4] += 1234567.0 * unit
+    assert free_matrices(M, K).rigid_modes.shape[1] == 2
+    K, M = K[2:, 2:], M[2:, 2:]
+    with pytest.raises(InputError, match=r"do not tell whether 1 motions of up to 0\.062 Hz are rigid"):
+        free_matrices(M, K)
+    assert free_matrices(M, K, rigid=0).rigid_modes.shape[1] == 0

@@ -6,7 +6,9 @@ from machines import noisy
 
 from gearpath.errors import AccuracyError, GearpathError, InputError
 from gearpath.identification import identify
+from gearpath.identification.bend import widening
 from gearpath.identification.measurement import Measurement
+from gearpath.identification.parameters import Unknowns
 
 LINES = np.linspace(30.0, 2500.0, 60)
 STIFF = "joint too stiff for its neighbours at this noise"
@@ -68,6 +70,24 @@ def test_stiff_joint_is_still_found():
     assert 0.05 < np.median(stated) < 0.3
 
 
+def test_interval_of_a_reciprocal():
+    """A flexibility c measured with deviation s: K = 1/c reaches to 1 / (c - 1.96 s), and to no end below 1.96 s."""
+    one = Unknowns.of({"b": ("uy",)})
+    for c, s in ((2e-8, 1e-9), (2e-8, 6e-9), (2e-8, 1e-8)):
+        upper = 1.0 / c + 1.96 * s / c**2 * widening(one, np.full(2, s / c))[0]
+        assert upper == pytest.approx(1.0 / (c - 1.96 * s), rel=1e-3)
+    assert np.isinf(widening(one, np.full(2, 0.6))).all()
+    mixed = widening(Unknowns.of({"b": ("uy",), "c": ("uy", "rx")}), np.full(8, 0.1))
+    np.testing.assert_allclose(mixed[[0, 4]], 1.0 / (1.0 - 0.196), rtol=1e-3)
+    assert (mixed[[1, 2, 3, 5, 6, 7]] > 3.0).all()
+
+
+def test_stiff_joint_has_a_wider_interval_than_linear_equations_say():
+    Y, _ = joined(5, 300.0 * MATRIX[:1, :1], 300.0 * LOSS[:1, :1])
+    found = identify(LINES, noisy(Y, 0.01, np.random.default_rng(0)), {"b": ("uy",)})
+    assert found.joints["b"].stiffness_error[0, 0] > 1.1 * np.sqrt(found.covariance[0, 0])
+
+
 @pytest.mark.parametrize("factor", [1e3, 1e4, 1e6])
 def test_too_stiff_joint_is_refused(factor):
     z, _, refused = trials(factor, 20)
@@ -92,7 +112,7 @@ def test_stiff_matrices():
 
 def test_one_stiff_joint_beside_a_soft_one():
     """The other joint is found; the stiff one has no interval, or all is refused."""
-    Y, _ = joined(5, np.diag([1e12, 3e6]), np.diag([30.0, 9.0]))
+    Y, _ = joined(5, np.diag([1e10, 3e6]), np.diag([30.0, 9.0]))
     returned, refused = 0, []
     for trial in range(4):
         try:

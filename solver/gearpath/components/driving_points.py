@@ -60,7 +60,7 @@ def _active(Y: Complex) -> np.ndarray:
 
 def _is_active(Y: Complex) -> bool:
     """Whether power comes out often, or more than it goes in at what is clearly resistive, as near resonances."""
-    out, taken = np.count_nonzero(_active(Y)), np.count_nonzero(_active(-Y))
+    out, taken = int(np.count_nonzero(_active(Y))), int(np.count_nonzero(_active(-Y)))
     return out > _OFTEN * Y.size or out > max(2 * taken, _FEWEST)
 
 

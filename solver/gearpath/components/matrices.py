@@ -18,19 +18,20 @@ from .structure import Structure
 
 @dataclass(frozen=True, eq=False)
 class Matrices:
-    """M q'' + (1 + i eta) K q = f in n coordinates, SI; every degree of freedom of a port is one of them.
+    """M x'' + (1 + i eta) K x = T^T f in N coordinates, SI. A degree of freedom of a port is one of q = T x.
 
     Dense matrices keep all their modes, sparse ones are reduced to what the frequencies need. Equal to any other of the
     same content.
     """
 
-    mass: Real | Sparse  # (n, n), symmetric positive definite
-    stiffness: Real | Sparse  # (n, n), symmetric positive semidefinite
-    rigid_modes: Real  # (n, r), a basis of the null space of the stiffness
-    ports: Mapping[str, Mapping[str, int]]  # port -> degree of freedom -> coordinate
+    mass: Real | Sparse  # (N, N), symmetric positive definite
+    stiffness: Real | Sparse  # (N, N), symmetric positive semidefinite
+    rigid_modes: Real  # (N, r), a basis of the null space of the stiffness
+    ports: Mapping[str, Mapping[str, int]]  # port -> degree of freedom -> which of q
     places: Mapping[str, Vector] = field(default_factory=dict)  # m, of ports whose place is known
     modal_damping: float = 0.0
     loss_factor: float = 0.0
+    motion: Real | None = None  # T (n, N); None for the unit matrix
 
     def position(self, port: str) -> Vector | None:
         """Place of a port, m; None where it is not known."""
@@ -41,9 +42,12 @@ class Matrices:
     ) -> Structure:
         """The matrices with the rows of each of ports and probes, which name ports. Raises InputError for others."""
         size = int(self.mass.shape[0])
-        unit = np.eye(1, size)[0]
+
+        def row(place: int) -> Real:
+            return np.eye(1, size, place)[0] if self.motion is None else np.asarray(self.motion[place])
+
         shapes = {
-            name: {dof: np.roll(unit, place) for dof, place in places.items() if dof in dofs}
+            name: {dof: row(place) for dof, place in places.items() if dof in dofs}
             for name, places in self.ports.items()
         }
         rows = {key: named_rows(shapes, port, dofs, size) for key, port in {**ports, **(probes or {})}.items()}
@@ -60,7 +64,7 @@ class Matrices:
             self.loss_factor,
         )
         content = hashlib.sha256(repr(plain).encode())
-        for matrix in (self.mass, self.stiffness):
+        for matrix in (self.mass, self.stiffness, *(() if self.motion is None else (self.motion,))):
             columns = scipy.sparse.csc_array(matrix)
             for part in (columns.data, columns.indices, columns.indptr):
                 content.update(np.ascontiguousarray(part).tobytes())

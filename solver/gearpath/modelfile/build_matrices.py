@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import lru_cache
+from math import dist
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from ..components import DOFS, Matrices, ModalModel, modal_model, modes, split_d
 from ..components.dofs import is_rotation
 from ..components.free_matrices import checked, free_matrices
 from ..errors import InputError, ModelError
+from ..joints.joint import Vector
 from ..numerics.arrays import Real, Sparse
 from .data.calculix import read_calculix
 from .data.matrices import MatrixFile
@@ -25,6 +27,7 @@ Stamps = tuple[tuple[int, int], ...]
 _MATRIX_FORMATS = (".npz", ".op4", ".sti", ".mtx")
 _BESIDE = {"modal_damping", "loss_factor", "vectors"}  # keys that change nothing about the matrices
 _DENSE = 600  # coordinates up to which all modes of a sparse structure are kept
+SAME_PLACE = 1e-4  # m between the place of a node in a file and that in the model: both may be rounded
 _MOST = 3000  # coordinates of a structure with a damping matrix, whose modes are all computed
 
 
@@ -62,15 +65,22 @@ def _prepared(text: str, folder: Path, dofs: tuple[str, ...], key: str, changed:
     def si(matrix: Real | Sparse, dense: bool = file.damping is not None) -> Real | Sparse:
         return _si(matrix, scale, ENERGY[table.units], dense)
 
-    seen = [place for places in ports.values() for place in places.values()]
-    prepared = guarded(
-        f"{key}.file", lambda: free_matrices(si(file.mass), si(file.stiffness), seen, table.rigid_motions)
-    )
-    component = Matrices(prepared.mass, prepared.stiffness, prepared.rigid_modes, ports, _places(table, file))
-    if file.damping is None:
-        return component
     given = file.damping
-    return _damped(component, guarded(f"{key}.file", lambda: checked("damping", si(given))), key)
+    damping = None if given is None else guarded(f"{key}.file", lambda: np.asarray(checked("damping", si(given))))
+    loaded = [place for places in ports.values() for place in places.values()]
+    loaded += [] if damping is None else np.flatnonzero(damping.any(axis=0)).tolist()
+    prepared = guarded(
+        f"{key}.file", lambda: free_matrices(si(file.mass), si(file.stiffness), loaded, table.rigid_motions)
+    )
+    component = Matrices(
+        prepared.mass,
+        prepared.stiffness,
+        prepared.rigid_modes,
+        ports,
+        _places(table, file, key),
+        motion=prepared.motion,
+    )
+    return component if damping is None else _damped(component, damping, key)
 
 
 def _matrices(table: MatricesTable, folder: Path, changed: Stamps) -> MatrixFile:
@@ -154,8 +164,6 @@ def _turns(file: MatrixFile, ports: dict[str, dict[str, int]]) -> "np.ndarray[tu
 
 def _si(matrix: Real | Sparse, scale: Real, energy: float, dense: bool) -> Real | Sparse:
     """The matrix of q_SI = scale q from that of q, whose quadratic form is an energy (of damping, per s)."""
-    if matrix.shape != (len(scale), len(scale)):
-        raise InputError(f"a matrix has shape {tuple(matrix.shape)} beside {len(scale)} coordinates; give equal sizes")
     if scipy.sparse.issparse(matrix) and not dense and len(scale) > _DENSE:
         inverse = scipy.sparse.diags_array(1.0 / scale)
         return scipy.sparse.csc_array(energy * (inverse @ matrix @ inverse))
@@ -163,14 +171,19 @@ def _si(matrix: Real | Sparse, scale: Real, energy: float, dense: bool) -> Real 
     return np.asarray(energy * full / np.outer(scale, scale))
 
 
-def _places(table: MatricesTable, file: MatrixFile) -> dict[str, tuple[float, float, float]]:
+def _places(table: MatricesTable, file: MatrixFile, key: str) -> dict[str, Vector]:
     length, places = LENGTH[table.units], {}
     for name, port in table.ports.items():
-        if port.at is not None:
-            places[name] = port.at
-        elif port.node is not None and port.node in file.positions:
+        if port.node is not None and port.node in file.positions:
             x, y, z = file.positions[port.node]
             places[name] = (length * x, length * y, length * z)
+        if port.at is not None and dist(port.at, places.setdefault(name, port.at)) > SAME_PLACE:
+            raise ModelError(
+                f"{key}.ports.{name}.at",
+                f"{show(list(port.at))} is given beside node {port.node}, which the file places at "
+                f"[{', '.join(f'{x:g}' for x in places[name])}] m",
+                "leave one of them out",
+            )
     return places
 
 
@@ -178,7 +191,8 @@ def _damped(component: Matrices, damping: Real, key: str) -> ModalModel:
     """The component in its modes, with the damping ratio of each and dashpots for what couples them."""
     structure = component.structure(DOFS, {name: name for name in component.ports})
     basis = modes(structure)
-    found = guarded(f"{key}.file", lambda: split_damping(basis.shapes.T @ damping @ basis.shapes, basis.eigenvalues))
+    shapes = basis.shapes if component.motion is None else component.motion @ basis.shapes
+    found = guarded(f"{key}.file", lambda: split_damping(shapes.T @ damping @ shapes, basis.eigenvalues))
     w = np.sqrt(basis.eigenvalues)
     ratios = np.divide(found.own, 2.0 * w, out=np.zeros_like(w), where=w > 0.0)
     return modal_model(basis, ratios, structure.ports, component.places, component.loss_factor, found.dashpots)

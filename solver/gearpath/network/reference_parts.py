@@ -52,7 +52,7 @@ def reference_parts(network: Network) -> list[Part]:
 
 
 def measured_parts(network: Network, parts: Sequence[Part], omega: Real) -> dict[int, Complex]:
-    """Receptances Y / (i w) (m, m, F) of the measured components, by the place of their part: none is joined rigidly."""
+    """Receptances Y / (i w) (m, m, F) of measured components, by the place of their part: none is joined rigidly."""
     return {
         k: item.at(omega) / (1j * omega)
         for name, item in network.system.components.items()

@@ -6,6 +6,7 @@ from functools import lru_cache, partial
 from ...components import Frame, Plate
 from ...errors import InputError, ModelError
 from ..build_structures import build_frame, build_plate
+from ..foreign_tables import MatricesTable
 from ..references import find, places_of
 from ..structure_tables import BeamTable, FrameTable, PlateShape, PlateTable
 from ..tables import FileTable
@@ -22,14 +23,14 @@ def _meshes(part: Plate | Frame) -> None:
 
 def check_plate(file: FileTable, table: PlateTable, key: str) -> None:
     """A plate on its own."""
-    _check_damping(table, key)
+    check_damping(table, key)
     _check_shape(file, table, key)
     as_model_error(lambda: _meshes(build_plate(file.materials, table)), key)
 
 
 def check_frame(file: FileTable, table: FrameTable, key: str) -> None:
     """A frame, its plates and its beams."""
-    _check_damping(table, key)
+    check_damping(table, key)
     if not table.beams and not table.plates:
         raise ModelError(f"{key}.beams", "there is neither a beam nor a plate", "give at least one of them")
     for name, plate in table.plates.items():
@@ -44,7 +45,8 @@ def check_frame(file: FileTable, table: FrameTable, key: str) -> None:
     as_model_error(lambda: _meshes(build_frame(file.materials, table)), key)
 
 
-def _check_damping(table: PlateTable | FrameTable, key: str) -> None:
+def check_damping(table: PlateTable | FrameTable | MatricesTable, key: str) -> None:
+    """Refuse two kinds of damping of one component."""
     if table.modal_damping and table.loss_factor:
         raise ModelError(
             f"{key}.loss_factor",

@@ -9,7 +9,7 @@ import scipy.sparse
 from ...errors import InputError
 from ...numerics.arrays import Real, Sparse
 from .frf import unreadable
-from .matrices import MatrixFile, readable
+from .matrices import MatrixFile, populated, readable
 
 
 def read_matrix_market(stiffness: Path, mass: Path | None, damping: Path | None) -> MatrixFile:
@@ -25,4 +25,7 @@ def _read(path: Path) -> Real | Sparse:
         matrix = scipy.io.mmread(path)
     except (OSError, ValueError, TypeError, OverflowError) as error:
         raise unreadable(path, error) from None
-    return scipy.sparse.csc_array(matrix) if scipy.sparse.issparse(matrix) else np.asarray(matrix)
+    if not scipy.sparse.issparse(matrix):
+        return np.asarray(matrix)
+    populated(path, int(matrix.shape[0]), int(matrix.nnz))
+    return scipy.sparse.csc_array(matrix)

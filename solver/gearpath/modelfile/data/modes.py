@@ -15,6 +15,12 @@ from .frf import unreadable
 from .matrices import readable
 
 _NORMAL, _COMPLEX = 2, 3  # analysis types of dataset 55
+_LIMITS = {  # least, most, in words
+    "frequencies": (0.0, 1e9, "frequencies in Hz, 0 of rigid motions"),
+    "shapes": (-1e30, 1e30, "finite numbers"),
+    "damping": (0.0, 1.0 - 1e-9, "damping ratios from 0 to below 1"),
+    "modal_masses": (1e-30, 1e30, "masses above 0"),
+}
 _SKEW = 0.2  # imaginary part of a complex shape turned real, of its length, above which it is no normal mode
 
 
@@ -43,16 +49,25 @@ def read_modes_npz(path: Path) -> ModeFile:
     missing = [name for name in ("frequencies", "shapes", "dofs") if name not in arrays]
     if missing:
         raise InputError(f"{path.name}: has no array {missing[0]!r}; {form}")
-    f, shapes, dofs = arrays["frequencies"], arrays["shapes"], [str(name) for name in arrays["dofs"].ravel()]
-    if f.dtype.kind not in "iuf" or shapes.dtype.kind not in "iuf" or shapes.shape != (len(dofs), f.size):
+    found = {name: _numbers(path, name, arrays[name]) for name in _LIMITS if name in arrays}
+    f, shapes, dofs = found["frequencies"], found["shapes"], [str(name) for name in arrays["dofs"].ravel()]
+    if f.ndim != 1 or not f.size or shapes.shape != (len(dofs), f.size):
         raise InputError(f"{path.name}: shapes {shapes.shape} are not {len(dofs)} rows of {f.size} numbers; {form}")
-    damping, masses = (arrays[name].astype(float) if name in arrays else None for name in ("damping", "modal_masses"))
-    for name, values in (("damping", damping), ("modal_masses", masses)):
-        if values is not None and values.shape != f.shape:
-            raise InputError(f"{path.name}: {name} has {values.size} entries for {f.size} modes; give one a mode")
-    return ModeFile(
-        f.astype(float), damping, np.ones(f.size) if masses is None else masses, dict(zip(dofs, shapes.astype(float)))
-    )
+    for name in ("damping", "modal_masses"):
+        if name in found and found[name].shape != f.shape:
+            raise InputError(f"{path.name}: {name} has {found[name].size} entries for {f.size} modes; give one a mode")
+    return ModeFile(f, found.get("damping"), found.get("modal_masses", np.ones(f.size)), dict(zip(dofs, shapes)))
+
+
+def _numbers(path: Path, name: str, values: "np.ndarray[Any, np.dtype[Any]]") -> Real:
+    """The array as floats. Raises InputError for what is no number, or not between its limits."""
+    if values.dtype.kind not in "iuf":
+        raise InputError(f"{path.name}: {name} is not an array of numbers; save it as floats")
+    least, most, wanted = _LIMITS[name]
+    wrong = values[~((values >= least) & (values <= most))]
+    if wrong.size:
+        raise InputError(f"{path.name}: {name} has {wrong.flat[0]:g}; give {wanted}")
+    return np.asarray(values, float)
 
 
 def read_modes_uff(path: Path) -> ModeFile:

@@ -14,7 +14,7 @@ import scipy.sparse
 from ...errors import InputError
 from ...numerics.arrays import Real, Sparse
 from .frf import unreadable
-from .matrices import MatrixFile, readable, whole
+from .matrices import MatrixFile, populated, readable, whole
 
 
 def read_npz(path: Path) -> MatrixFile:
@@ -26,13 +26,13 @@ def read_npz(path: Path) -> MatrixFile:
     except (OSError, ValueError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise unreadable(path, error) from None
     least = _size(arrays)
+    populated(path, least, sum(item.size for item in arrays.values()))
     found = {name: _matrix(path, arrays, name, least) for name in ("stiffness", "mass", "damping")}
     stiffness, mass = found["stiffness"], found["mass"]
     if stiffness is None or mass is None:
         lacking = "stiffness" if stiffness is None else "mass"
         raise InputError(f"{path.name}: has no array {lacking!r} (it has: {', '.join(arrays) or 'none'}); add it")
-    size = int(stiffness.shape[0])
-    nodes, directions = (_numbers(path, arrays, name, size) for name in ("dof_nodes", "dof_directions"))
+    nodes, directions = (_numbers(path, arrays, name, least) for name in ("dof_nodes", "dof_directions"))
     if (nodes is None) != (directions is None):
         raise InputError(f"{path.name}: dof_nodes and dof_directions belong together; give both or none")
     if directions is not None and not np.isin(directions, np.arange(1, 7)).all():
@@ -45,7 +45,7 @@ def _size(arrays: dict[str, np.ndarray]) -> int:
     named = [(name, part) for name in ("stiffness", "mass", "damping") for part in ("row", "column")]
     places = [arrays[f"{name}_{part}"] for name, part in named if f"{name}_{part}" in arrays]
     dense = [arrays[name].shape[0] for name in ("stiffness", "mass", "damping") if name in arrays and arrays[name].ndim]
-    return max([*dense, *(int(item.max(initial=-1)) + 1 for item in places if item.dtype.kind in "iu")], default=0)
+    return max([*dense, *(int(item.max()) + 1 for item in places if item.size and item.dtype.kind in "iu")], default=0)
 
 
 def _matrix(path: Path, arrays: dict[str, np.ndarray], name: str, size: int) -> Real | Sparse | None:
