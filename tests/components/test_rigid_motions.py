@@ -245,6 +245,7 @@ def test_a_given_number_is_obeyed_where_the_digits_do_not_tell():
     held = free_matrices(M, few, rigid=0)
     assert held.rigid_modes.shape[1] == 0
     np.testing.assert_array_equal(held.stiffness, few)
+    assert free_matrices(M, few, rigid=3).rigid_modes.shape[1] == 3  # the third meets little more than rounding
     free, inertia, _ = cantilever(100, free=1)
     made = free_matrices(inertia, few_digits(free, 7), rigid=2)
     frequencies = np.sqrt(scipy.linalg.eigh(made.stiffness, made.mass, eigvals_only=True)[2:4]) / (2 * np.pi)

@@ -1,5 +1,7 @@
 """Ports by node whose places the file knows: what the model says of them must agree. Motions without mass."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.linalg
@@ -80,6 +82,9 @@ def test_motions_without_mass_are_no_modes(tmp_path):
     assert gp.natural_frequencies(model) == pytest.approx(exact, rel=1e-8)
     assert len(exact) == 11
     assert gp.state_space(model).nstates == 2 * (11 + 1)
+    component = model.system.components["body"]
+    assert replace(component) == component
+    assert replace(component, motion=2.0 * component.motion) != component
     C = np.zeros((22, 22))
     C[20, 20] = 50.0
     f = model.frequencies()
