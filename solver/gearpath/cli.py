@@ -158,7 +158,8 @@ def report(
 
     loaded = console.load_with(model, set_)
     reports = [validate_one(path, loaded, quiet=json) for path in fmu]
-    written = write_report(loaded, output, validations=reports)
+    with console.notes(console.err):
+        written = write_report(loaded, output, validations=reports)
     passed = all(item.passed for item in reports)
     if json:
         console.print_json({"report": written, "passed": passed, "fmus": [console.report_as_dict(r) for r in reports]})

@@ -34,6 +34,23 @@ def test_sweep_prints_bands_and_checks(run):
     assert out.count("passed") == 8
 
 
+def test_sweep_and_report_say_that_a_rigid_joint_leaves_no_paths(run, tmp_path):
+    before, after = Path(MODEL).read_text(encoding="utf-8").split("[joints.bearing_1]")
+    weld = '[joints.bearing_1]\nkind = "rigid"\nbetween = ["gear_train.input@0.0", "casing"]\n'
+    welded = tmp_path / "welded.toml"
+    welded.write_text(before + weld + after[after.index("[joints.bearing_2]") :], encoding="utf-8")
+    code, out, err = run("sweep", welded, "--set", "frequency.points=50", "--check")
+    assert code == 0
+    assert err.count("note: joints.bearing_1: gear_train and casing move as one") == 1
+    assert "no joint is a power flow path" in out
+    assert "alpha (all)" not in out
+    _, _, err = run("report", welded, "--set", "frequency.points=20", "-o", tmp_path / "page.html")
+    assert err.count("note: joints.bearing_1") == 1
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "Rigid joints hold both ends of every bearing together" in page
+    assert "no joint of kind bearing" not in page
+
+
 def test_sweep_for_machines_equals_the_power_flow(run):
     code, out, _ = run("sweep", MODEL, "--set", "frequency.points=7", "--json")
     data = json.loads(out)

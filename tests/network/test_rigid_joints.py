@@ -8,17 +8,20 @@ import pytest
 from rigid_machines import beam, gearbox_on_beam, ground, machine, on, rigid, spatial_gearbox, spring
 from systems import STEEL
 
-from gearpath.components import Frame, Measured, RigidBody
+from gearpath.components import Frame, Matrices, Measured, ModalModel, RigidBody
 from gearpath.components.cross_section import BarSection
 from gearpath.components.frame_beam import FrameBeam
 from gearpath.errors import InputError
 from gearpath.joints import Port
 from gearpath.network.assemble import assemble
+from gearpath.network.contained import self_contained
 from gearpath.network.natural import natural_frequencies
+from gearpath.network.power import power_flow
 from gearpath.network.reference import reference_solution
 from gearpath.network.response import frequency_response
 from gearpath.network.synthesis import Synthesis
 from gearpath.network.system import Sensor
+from gearpath.network.time_twin import time_twin
 
 LINES = 2 * np.pi * np.geomspace(20.0, 5000.0, 25)
 FREE = spring(on("a", 0.0), ground(), 0.0)  # no stiffness: the machine floats
@@ -62,6 +65,41 @@ def test_a_mode_takes_of_each_ratio_the_part_of_the_strain_energy():
     elastic = modal.eigenvalues > 0.0
     np.testing.assert_allclose(modal.damping[elastic] / (2.0 * np.sqrt(modal.eigenvalues[elastic])), 0.02, rtol=1e-7)
     assert (modal.damping[~elastic] == 0.0).all()
+
+
+def test_between_stiff_joints_parts_of_one_ratio_damp_less():
+    """Their free modes damp no rigid motion of a part: sum_k sqrt(L_k) T_k^2 < sqrt(mu) (docs/model_file.md)."""
+    stiff = spring(on("a", 0.3), on("b", 0.0), [1e12] * 3 + [1e10] * 3)
+    found = []
+    for system in (bars(0.01), replace(bars(0.01), joints={"free": FREE, "weld": stiff})):
+        poles = np.linalg.eigvals(time_twin(assemble(system).modal(), outputs=()).A)
+        poles = poles[poles.imag > 100.0]
+        found.append((-poles.real / abs(poles))[np.argsort(abs(poles))][[0, 2, 4]])  # bending, in one plane
+    np.testing.assert_allclose(found[0], 0.01, rtol=1e-6)
+    np.testing.assert_allclose(found[1], [0.00203, 0.00644, 0.00815], atol=1e-5)
+
+
+def chain(springs, zeta):
+    """Unit masses between springs in y, which nothing holds."""
+    steps = np.diff(np.eye(len(springs) + 1), axis=0)
+    K, ports = steps.T @ np.diag(springs) @ steps, {"first": {"uy": 0}, "last": {"uy": len(springs)}}
+    return Matrices(np.eye(len(K)), K, np.ones((len(K), 1)), ports, {}, zeta)
+
+
+def test_one_ratio_is_composite_in_whatever_form_a_structure_comes():
+    parts = {"a": chain([1e7, 3e7, 2e7], 0.01), "b": chain([5e7, 4e6], 0.03)}
+    foot = spring(Port("b", place="last"), ground(), [1e6], ("uy",))
+    weld = rigid(Port("a", place="last"), Port("b", place="first"))
+    system = machine(parts, {"foot": foot, "weld": weld}, Port("a", place="first"), dofs=("uy",))
+    contained = self_contained(system)
+    assert all(isinstance(part, ModalModel) for part in contained.components.values())
+    given, modes = (power_flow(assemble(item).modal(), LINES) for item in (system, contained))
+    np.testing.assert_allclose(modes.input_power, given.input_power, rtol=1e-9)
+    np.testing.assert_allclose(reference_solution(assemble(contained), LINES).input_power, given.input_power, rtol=1e-7)
+    first = contained.components["a"]
+    uneven = replace(first, damping_ratios=(*first.damping_ratios[:-1], 0.0101))  # each its own: a matrix
+    off = power_flow(assemble(replace(contained, components={"a": uneven, "b": parts["b"]})).modal(), LINES)
+    assert abs(off.input_power / given.input_power - 1.0).max() > 0.1
 
 
 def test_two_bodies_welded_are_one_body():

@@ -97,7 +97,8 @@ def test_where_nothing_resists_the_spin_the_excitation_stays_the_inertial_one():
 
 def test_a_bearing_within_one_body_is_no_path():
     """The power passes by it through the weld, which has no force: what it carries says nothing."""
-    network = assemble(spatial_gearbox(bearing_3=BOTH_HELD["bearing_3"]))
+    with pytest.warns(UserWarning, match="move as one"):
+        network = assemble(spatial_gearbox(bearing_3=BOTH_HELD["bearing_3"]))
     assert network.paths == ()
     assert "bearing_1.force_uy" in [output.name for output in network.modal().outputs]
 
@@ -192,6 +193,11 @@ def test_state_space_names_the_joined_body():
 def test_bearings_inside_a_joined_body_are_no_paths_and_a_warning_says_so():
     data = gp.load(Path(__file__).parents[2] / "models" / "gearbox.toml").to_dict()
     data["joints"]["bearing_1"] = {"kind": "rigid", "between": data["joints"]["bearing_1"]["between"]}
-    with pytest.warns(UserWarning, match=r"joints\.bearing_1: holds gear_train and casing .* bearing_2, bearing_3"):
+    with pytest.warns(UserWarning, match=r"^joints\.bearing_1: gear_train and casing move .* bearing_2, bearing_3"):
         flow = gp.power_flow(gp.Model.from_dict(data), [100.0])
     assert flow.sizes["path"] == 0
+    data["components"]["frame"] = {**data["components"]["casing"], "mass": 3.0}
+    weld = {"kind": "rigid", "between": ["casing", "frame"], "at": [0.0, -0.1, 0.0]}
+    data["joints"] = {"weld": weld, **data["joints"]}  # not the one that makes the difference, but the first
+    with pytest.warns(UserWarning, match=r"^joints\.weld, joints\.bearing_1: gear_train and casing and frame move"):
+        assemble(gp.Model.from_dict(data).system)

@@ -18,6 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def test_the_page_runs(tmp_path, monkeypatch):
     (tmp_path / "models").symlink_to(ROOT / "models")
     monkeypatch.chdir(tmp_path)
+    plt.close("all")  # what other tests left open
     page, scope = (ROOT / "docs" / "control.md").read_text(), {}
     blocks = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     with warnings.catch_warnings():

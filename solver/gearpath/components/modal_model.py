@@ -49,12 +49,14 @@ class ModalModel:
         """Unit mass, diagonal stiffness, and the rows of each of ports and probes, which name ports.
 
         `modal_damping` is the mean ratio of the elastic modes, or the least of them where stiff modes that are damped
-        beyond critical make the mean so; `damping_ratios` are those of all modes.
+        beyond critical make the mean so; `damping_ratios` are those of all modes, None where all are one ratio: then
+        rigid joints treat it as that of any structure (`network.joined_damping`).
         """
         L = np.array(self.eigenvalues)
         elastic = L > 0.0
         ratios = np.where(elastic, self.damping_ratios, 0.0)
-        mean = float(ratios[elastic].mean()) if elastic.any() else 0.0
+        one = len(set(ratios[elastic].tolist())) < 2 and not self.dashpots
+        mean = float(ratios[elastic].mean() if elastic.any() and not one else ratios.max(initial=0.0))
         if mean >= 1.0:
             mean = float(ratios[ratios > 0.0].min())
         rows = {key: named_rows(self.ports, port, dofs, len(L)) for key, port in {**ports, **(probes or {})}.items()}
@@ -65,7 +67,7 @@ class ModalModel:
             modal_damping=mean,
             ports=rows,
             loss_factor=self.loss_factor,
-            damping_ratios=ratios,
+            damping_ratios=None if one else ratios,
             dashpots=np.array(self.dashpots) if self.dashpots else None,
         )
 

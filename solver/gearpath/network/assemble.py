@@ -89,8 +89,9 @@ def _warn_of_lost_paths(system: System, rigid: Sequence[RigidRows]) -> None:
         ]
         if group.joints and lost:
             warnings.warn(
-                f"joints.{group.joints[0]}: holds {' and '.join(group.components)} rigidly together, so that "
-                f"{', '.join(lost)} inside are no power flow paths; make it a stiff bearing to see all paths",
+                f"{', '.join(f'joints.{name}' for name in group.joints)}: {' and '.join(group.components)} move as "
+                f"one, so that no power flow path leads through {', '.join(lost)} inside; give a stiff bearing in "
+                "place of a rigid joint beside them to see all paths",
                 stacklevel=3,
             )
 

@@ -48,11 +48,18 @@ def computed(results: Results) -> str:
     )
 
 
+def _why_none(results: Results) -> str:
+    """Why there is no path: there is no bearing, or rigid joints hold both ends of every one together."""
+    if any(joint.kind in ("bearing", "beam_joint") for joint in results.system.joints.values()):
+        return "Rigid joints hold both ends of every bearing together, so that no power passes through paths."
+    return "The model has no joint of kind bearing, so that no power passes through paths."
+
+
 def findings(results: Results, validations: Sequence[ValidationReport]) -> list[Finding]:
     """What came out, one paragraph for each question."""
     found = []
     if not results.paths:
-        found.append(Finding("Paths", "The model has no joint of kind bearing, so that no power passes through paths."))
+        found.append(Finding("Paths", _why_none(results)))
     elif not results.input_power.any():
         found.append(Finding("Paths", "The excitation puts no power in, so that none passes through the bearings."))
     else:

@@ -39,9 +39,10 @@ def run(model: Model, output: Path | None, check: bool, json: bool) -> bool:
     """Sweep the model, print or write the result; whether the check (if wanted) passed."""
     if output is not None and output.suffix != ".csv":
         raise InputError(f"{output}: is not a .csv file; name it so, or use --json for other formats")
-    with console.progress("power flow", model.frequency.points, quiet=json) as bar:
-        flow = api.power_flow(model, progress=bar.advance)
-    checks = reference_checks(model, quiet=json) if check else []
+    with console.notes(console.err):
+        with console.progress("power flow", model.frequency.points, quiet=json) as bar:
+            flow = api.power_flow(model, progress=bar.advance)
+        checks = reference_checks(model, quiet=json) if check else []
     if output is not None:
         write_text(output, csv_text(flow))
     if json:
@@ -198,7 +199,7 @@ def _print(flow: xr.Dataset, checks: list[Check]) -> None:
         table.add_column(name, justify="right")
     for name, values in rows.items():
         table.add_row(name, *(f"{mean:.4g}" for _, mean in band_means(values, f)))
-    console.out.print(table)
+    console.out.print(table if flow.path.size else "no joint is a power flow path, so that there is no power ratio")
     for check in checks:
         verdict = "[green]passed[/]" if check.passed else "[red]FAILED[/]"
         console.out.print(f"{verdict} {escape(check.name)}: {check.figure:.2g} (limit {check.limit:.2g})")
