@@ -10,6 +10,7 @@ import safety_build
 
 # Tests of what is in the file rather than of what the library does, or of another library.
 OTHERS = ("conformance", "python_kind", "package", "build", "validation", "icon", "terminals", "documentation")
+OTHERS += ("reduced", "pendulum")
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("sanitized")]
 
