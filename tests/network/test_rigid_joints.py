@@ -226,3 +226,26 @@ def test_an_acceleration_beside_a_mesh_is_left_out_or_refused():
     asked = replace(system, sensors={"top": Sensor(Port("casing"), "uy", "acceleration")})
     with pytest.raises(InputError, match=r"^sensors.top.quantity: .* derivative of the transmission error; use veloc"):
         assemble(asked).modal()
+
+
+def test_losses_of_joined_parts_beside_a_measured_mass():
+    """Its fit stands for it in natural frequencies; a part that only moves rigidly may have a loss factor."""
+    parts = {"a": replace(chain([1e7, 3e7], 0.0), loss_factor=0.02), "b": replace(chain([5e7], 0.0), loss_factor=0.1)}
+    lump = Matrices(np.array([[0.7]]), np.zeros((1, 1)), np.ones((1, 1)), {"p": {"uy": 0}}, {}, 0.0, 0.3)
+    mass = Matrices(np.array([[4.0]]), np.zeros((1, 1)), np.ones((1, 1)), {"p": {"uy": 0}})
+    lines = 2 * np.pi * np.linspace(20.0, 2000.0, 60)
+    known = Measured(lines, 1.0 / (4j * lines)[:, None, None], {"p": {"uy": 0}})
+    joints = {
+        "foot": spring(Port("b", place="last"), Port("m", place="p"), [1e6], ("uy",)),
+        "weld": rigid(Port("a", place="last"), Port("b", place="first")),
+        "lump": rigid(Port("lump", place="p"), Port("b", place="last")),
+    }
+    found = []
+    for item in (mass, known):
+        system = machine({**parts, "lump": lump, "m": item}, joints, Port("a", place="first"), dofs=("uy",))
+        modal = assemble(system).modal()
+        found.append((natural_frequencies(modal), power_flow(modal, lines[::7]).input_power))
+        check = reference_solution(assemble(system), lines[::7])
+        np.testing.assert_allclose(found[-1][1], check.input_power, rtol=1e-8)
+    np.testing.assert_allclose(found[1][0], found[0][0], rtol=1e-5, atol=1e-3)
+    np.testing.assert_allclose(found[1][1], found[0][1], rtol=1e-8)

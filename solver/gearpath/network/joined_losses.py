@@ -31,8 +31,8 @@ def joined_losses(
             continue
         elastic = [name for name in group.components if network.eigenvalues[network.components[name]].any()]
         factors = {name: network.loss_factors.get(name, 0.0) for name in elastic}
-        for name in elastic:
-            if factors[name]:
+        for name in group.components:
+            if name in network.loss_factors:
                 shares[name] = composite(network.loss_share(name) * network.eigenvalues, T, mu)
         if len(set(factors.values())) > 1 and not has_gears(network, group):
             least = min(factors.values())

@@ -104,6 +104,7 @@ def fitted(network: ModalNetwork) -> ModalNetwork:
         modal_damping=ratios,
         damping_shares=shares,
         loss_shares={name: share @ T for name, share in network.loss_shares.items()},
+        joined_losses={name: replace(item, rows=item.rows @ T) for name, item in network.joined_losses.items()},
         dashpots={name: D @ T for name, D in network.dashpots.items()},
         eigenvalues=np.concatenate(
             [fits[n].eigenvalues if n in fits else network.eigenvalues[network.components[n]] for n in parts]

@@ -172,15 +172,10 @@ def _composite(
     ratios, factors, start = np.zeros_like(eigenvalues), np.zeros_like(eigenvalues), 0
     for s in own:
         part = shapes[start : start + s.size]
-        stored = s.stiffness @ part
-        zeta = s.modal_damping
-        if s.damping_ratios is not None:
-            zeta, stored_ratio = 1.0, (s.damping_ratios if gears else 0.0 * s.damping_ratios)[:, None] * stored
-        else:
-            stored_ratio = stored
-        for target, factor, force in ((ratios, zeta, stored_ratio), (factors, s.loss_factor, stored)):
-            energy = np.einsum("ir,ir->r", part, force)
-            target += factor * np.divide(energy, eigenvalues, out=np.zeros_like(energy), where=eigenvalues > 0.0)
+        zeta = np.full(s.size, s.modal_damping) if s.damping_ratios is None else s.damping_ratios * gears
+        for target, factor in ((ratios, zeta), (factors, np.full(s.size, s.loss_factor))):
+            energy = np.einsum("ir,i,ir->r", part, factor, s.stiffness @ part)
+            target += np.divide(energy, eigenvalues, out=np.zeros_like(energy), where=eigenvalues > 0.0)
         start += s.size
     damping = 2.0 * ratios * np.sqrt(eigenvalues)
     return momentum * damping @ momentum.T, momentum * (factors * eigenvalues) @ momentum.T
