@@ -85,13 +85,13 @@ def random_gearbox(seed: int, bearings: int, helical: bool = False) -> System:
     count = int(rng.integers(1, 4))
     shafts, meshes = {}, {}
     for s in range(count):
-        length = rng.uniform(0.15, 0.4)
+        length = _station(rng.uniform(0.15, 0.4))
         disks = tuple(
-            Disk(f"gear_{d}", float(z), *_disk(rng))
+            Disk(f"gear_{d}", _station(z), *_disk(rng))
             for d, z in enumerate(np.sort(rng.uniform(0.1, 0.9, rng.integers(1, 3))) * length)
         )
         diameter = rng.uniform(0.02, 0.06)
-        split = rng.uniform(0.3, 0.7) * length
+        split = _station(rng.uniform(0.3, 0.7) * length)
         sections = (Section(split, diameter), Section(length - split, 0.8 * diameter, 0.2 * diameter))
         shafts[f"shaft_{s}"] = Shaft(
             STEEL, (0.1 * s, 0.0, -length / 2), sections, 0.886, (int(rng.integers(1, 4)),), disks
@@ -107,7 +107,7 @@ def random_gearbox(seed: int, bearings: int, helical: bool = False) -> System:
         name = f"shaft_{int(rng.integers(count))}"
         K = random_matrix(rng, dofs, int(rng.integers(1, len(dofs) + 1)), 10 ** rng.uniform(7, 8.5), 0.02)
         C = 10 ** rng.uniform(-6.5, -5) * K
-        z = float(rng.choice([0.0, 1.0, rng.uniform(0.05, 0.95)])) * shafts[name].length
+        z = _station(float(rng.choice([0.0, 1.0, rng.uniform(0.05, 0.95)])) * shafts[name].length)
         joints[f"bearing_{k}"] = Joint(
             "bearing",
             (Port("train", name, z), Port("casing")),
@@ -133,7 +133,7 @@ def random_gearbox(seed: int, bearings: int, helical: bool = False) -> System:
     excitation = (
         MeshExcitation("train", "mesh_0")
         if meshes and rng.random() < 0.7
-        else PointExcitation(Port("train", "shaft_0", 0.4 * shafts["shaft_0"].length), "uy")
+        else PointExcitation(Port("train", "shaft_0", _station(0.4 * shafts["shaft_0"].length)), "uy")
     )
     return System(f"random_{seed}", dofs, {"train": train, "casing": casing}, joints, excitation)
 
@@ -160,6 +160,11 @@ def _in_space(rng, shafts, meshes):
         place = (x + apart * np.cos(direction), y + apart * np.sin(direction), z - tapered[other].disk(wheel).z)
         tapered[other] = replace(tapered[other], origin=tuple(map(float, place)))
     return tapered, meshes
+
+
+def _station(z):
+    """On a grid of 0.1 mm (m): spans of micrometres, whose modes are above 1 GHz, are refused, and rightly."""
+    return round(float(z), 4)
 
 
 def _disk(rng):
