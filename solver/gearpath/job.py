@@ -15,7 +15,7 @@ from .modelfile import Model
 
 def export_one(model: Model, path: Path, kind: str, fmi: str) -> Path:
     """Write one FMU and say so."""
-    with console.notes():
+    with console.notes(), console.working(f"exporting {path.name}"):
         api.export_fmu(model, path, fmi=fmi, kind=kind)
     console.out.print(f"wrote {escape(str(path))} ({kind} kind, FMI {fmi}, {path.stat().st_size / 1e3:.0f} kB)")
     return path
@@ -39,9 +39,11 @@ def build(model: Model, folder: Path) -> bool:
     from .report import write_report
 
     console.out.print(f"model {escape(model.name)}: {_contents(model)}")
-    flow = api.power_flow(model)
+    with console.progress("power flow", model.frequency.points) as bar:
+        flow = api.power_flow(model, progress=bar.advance)
     residual = abs(flow.dissipated_power.sum("element") / flow.input_power - 1.0).max().item()
-    first = ", ".join(f"{f:.1f}" for f in api.natural_frequencies(model)[:6])
+    with console.working("natural frequencies"):
+        first = ", ".join(f"{f:.1f}" for f in api.natural_frequencies(model)[:6])
     console.out.print(f"natural frequencies {first} ... Hz; power balance holds to {residual:.1g}")
     reports = []
     for ending, kind, fmi in (("", "native", "2.0"), ("-fmi3", "native", "3.0"), ("-python", "python", "2.0")):

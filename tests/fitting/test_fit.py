@@ -215,6 +215,16 @@ def test_modes_limits_the_order():
     assert any("allow more" in note for note in fit.notes)
 
 
+def test_progress_tells_modes_and_the_error_they_leave():
+    f, Y, _ = synthetic(10, 6, 6, 2, 400)
+    told = []
+    fit = fit_mobility(f, Y, progress=lambda modes, error: told.append((modes, error)))
+    modes, error = told[-1]
+    assert modes >= fit.order  # those that the fit can do without are taken out after the last word
+    assert error < told[0][1]
+    assert fit.error.max() < 1e-3
+
+
 def test_active_data_give_a_passive_fit_and_are_named():
     """A channel whose sign is wrong gives negative driving-point resistance."""
     f = np.linspace(20.0, 400.0, 300)

@@ -1,6 +1,7 @@
 """The fit of real modes to measured mobilities."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -29,6 +30,7 @@ def fit_mobility(
     quantity: str = "mobility",
     modes: int | None = None,
     tolerance: float = 1e-3,
+    progress: Callable[[int, float], None] = lambda *_: None,
 ) -> ModalFit:
     """Real modes fitted to a square matrix of measured FRFs: passive, reciprocal, and no more modes than they need.
 
@@ -39,6 +41,7 @@ def fit_mobility(
         modes: most second-order coordinates, residual terms included; None: as many as are worth it.
         tolerance: largest error aimed at, |fit - Y| relative to the FRF's own largest gain in the band. In noise the
             fit ends where a further mode would fit noise, and says so.
+        progress: called as progress(modes, error) as modes are added; large data take many seconds.
 
     Modes are added where they take most from the misfit and all are refined together by nonlinear least squares
     (`order`, `pursuit`, `refine`). Notes say what the data are not, such as driving points that are not those of
@@ -48,16 +51,22 @@ def fit_mobility(
     omega = 2.0 * np.pi * f
     Y = as_mobility(omega, H, quantity)
     wrong = complaint(omega, Y, quantity, [f"channel {k}" for k in range(Y.shape[1])])
-    fit = fit_modes(omega, Y, modes, tolerance)
+    fit = fit_modes(omega, Y, modes, tolerance, progress)
     return replace(fit, notes=(f"the data are given as {quantity}, but {wrong}", *fit.notes)) if wrong else fit
 
 
-def fit_modes(omega: Real, mobility: Complex, modes: int | None, tolerance: float) -> ModalFit:
+def fit_modes(
+    omega: Real,
+    mobility: Complex,
+    modes: int | None,
+    tolerance: float,
+    progress: Callable[[int, float], None] = lambda *_: None,
+) -> ModalFit:
     """Real modes of a checked mobility (F, m, m) at increasing `omega` (rad/s); see `fit_mobility`."""
     data = check_data(omega, mobility)
     problem = Problem.of(omega, (mobility + mobility.swapaxes(1, 2)) / 2.0)
     most = min(_MOST, problem.stacked.size // (4 * (problem.channels + 2))) if modes is None else modes
-    found = grow(problem, max(most, 1), tolerance)
+    found = grow(problem, max(most, 1), tolerance, progress)
     trial = found.modes.picked(np.argsort(found.modes.frequency, kind="stable"))
     relative = errors(problem, found.residual)
     eigenvalues = (trial.frequency * problem.top) ** 2

@@ -6,7 +6,7 @@ from line to line), such as damping that no viscous mode has, the last sixteen m
 there would be no end of them. A fit whose largest error is within the tolerance needs no more modes.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -21,26 +21,29 @@ _AIM = 0.7  # of the tolerance: the last refinement lessens the squares, and may
 _ROUNDS = 2
 _AT_ONCE = 4  # modes added in one step, or a quarter of those there are
 
+Told = Callable[[int, float], None]  # modes so far, and the largest error that they leave
 
-def grow(problem: Problem, most: int, tolerance: float) -> Refined:
+
+def grow(problem: Problem, most: int, tolerance: float, progress: Told = lambda *_: None) -> Refined:
     """As few modes as meet the tolerance, or as the misfit pays for; never more than `most`.
 
     Where several modes at a time lead into a poor minimum, they are tried again one by one.
     """
-    best = _tried(problem, most, tolerance, _AT_ONCE)
+    best = _tried(problem, most, tolerance, _AT_ONCE, progress)
     if largest_error(problem, best.residual) > tolerance and not is_noise(problem, best.residual):
-        other = _tried(problem, most, tolerance, 1)
+        other = _tried(problem, most, tolerance, 1, progress)
         best = min(best, other, key=lambda one: largest_error(problem, one.residual))
     return best
 
 
-def _tried(problem: Problem, most: int, tolerance: float, at_once: int) -> Refined:
+def _tried(problem: Problem, most: int, tolerance: float, at_once: int, progress: Told) -> Refined:
     """Modes added and taken out: that leads away from poor minima and can lessen the misfit, so it is done again."""
     aim = _AIM * tolerance
     empty = Trial(np.zeros(0), np.zeros(0), np.zeros((0, problem.channels)))
     best = Refined(empty, problem.cost(problem.stacked), -problem.stacked)
     for _ in range(_ROUNDS):
-        found = lean(problem, refine(problem, _grown(problem, best, most, aim, at_once).modes, *FINE), aim)
+        grown = _grown(problem, best, most, aim, at_once, progress)
+        found = lean(problem, refine(problem, grown.modes, *FINE), aim)
         gained, best = found.cost < _PROGRESS * best.cost, found
         if not gained or largest_error(problem, best.residual) <= aim or is_noise(problem, best.residual):
             break
@@ -49,7 +52,7 @@ def _tried(problem: Problem, most: int, tolerance: float, at_once: int) -> Refin
     return merged_rigid(problem, (best if met else last).modes)
 
 
-def _grown(problem: Problem, best: Refined, most: int, aim: float, at_once: int) -> Refined:
+def _grown(problem: Problem, best: Refined, most: int, aim: float, at_once: int, progress: Told) -> Refined:
     """More modes, until the aim, noise, or where they bring little."""
     trail, batch = [best], at_once
     while len(best.modes) < most and largest_error(problem, best.residual) > aim:
@@ -67,6 +70,7 @@ def _grown(problem: Problem, best: Refined, most: int, aim: float, at_once: int)
             continue
         best = tried
         trail.append(best)
+        progress(len(best.modes), largest_error(problem, best.residual))
         if _stands(problem, trail):
             break
         near = largest_error(problem, best.residual) < 10.0 * aim
