@@ -6,7 +6,7 @@ import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearpath.numerics.lanczos import block_lanczos
+from gearpath.numerics.lanczos import BlockLanczos
 
 
 def pencil(seed, n, spread=4.0):
@@ -19,7 +19,7 @@ def pencil(seed, n, spread=4.0):
 
 
 def run(K, M, F, count, held=None):
-    return block_lanczos(lambda x: np.linalg.solve(K, M @ x), M, np.linalg.solve(K, F), count, held)
+    return BlockLanczos(lambda x: np.linalg.solve(K, M @ x), M, np.linalg.solve(K, F), held).take(count)
 
 
 @pytest.mark.parametrize(("width", "count"), [(1, 20), (3, 21), (9, 27)])
@@ -92,6 +92,25 @@ def test_the_same_input_gives_the_same_vectors():
     K, M, _, _ = pencil(11, 30)
     F = np.ones((30, 1))
     np.testing.assert_array_equal(run(K, M, F, 12).vectors, run(K, M, F, 12).vectors)
+
+
+@pytest.mark.parametrize("steps", [(1, 2, 12), (5, 5, 3, 12), (12,)])
+def test_more_vectors_are_those_of_one_go(steps):
+    """Also after a cut through a block of three, and without solving for any vector again."""
+    K, M, _, _ = pencil(12, 40)
+    solved, start = [], np.linalg.solve(K, np.random.default_rng(13).normal(size=(40, 3)))
+
+    def operator(x):
+        solved.append(x.shape[1])
+        return np.linalg.solve(K, M @ x)
+
+    lanczos = BlockLanczos(operator, M, start)
+    for count in steps:
+        found = lanczos.take(count)
+        assert found.vectors.shape == (40, count)
+        assert sum(found.blocks) == count
+    assert solved == [3, 3, 3]
+    np.testing.assert_array_equal(found.vectors, BlockLanczos(operator, M, start).take(12).vectors)
 
 
 @settings(max_examples=50, deadline=None)

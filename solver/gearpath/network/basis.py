@@ -4,7 +4,7 @@ import numpy as np
 
 from ..components import Modes, Structure
 from ..errors import AccuracyError
-from ..reduction import estimated_deviation, hold, inertia_relief, lanczos, port_rows, reduced_modes
+from ..reduction import LanczosReduction, estimated_deviation, hold, inertia_relief, port_rows, reduced_modes
 
 _TOLERANCE = 1e-6  # estimated deviation of the interface mobility anywhere in the band
 _LINES = 16
@@ -18,13 +18,14 @@ def basis_of(structure: Structure, band: float, vectors: int | None) -> Modes:
     estimated deviation of the interface mobility below 1e-6 up to `band` (Hz). Raises AccuracyError where 2000 do not.
     """
     held = hold(structure, port_rows(structure))
+    lanczos = LanczosReduction(held)
     if vectors is not None:
-        return reduced_modes(structure, lanczos(structure, vectors, held=held))
+        return reduced_modes(structure, lanczos.take(vectors))
     omega = 2.0 * np.pi * np.linspace(band / _LINES, band, _LINES)
     flexibility = inertia_relief(structure)
     count = max(4 * held.boundary, 24)
     while True:
-        reduction = lanczos(structure, count, held=held)
+        reduction = lanczos.take(count)
         worst = float(estimated_deviation(structure, reduction, omega, flexibility=flexibility).max())
         if worst < _TOLERANCE:
             return reduced_modes(structure, reduction)
@@ -33,4 +34,4 @@ def basis_of(structure: Structure, band: float, vectors: int | None) -> Modes:
                 f"{reduction.vectors} vectors leave the mobility of a component off by {worst:.1g} below {band:g} Hz; "
                 "give a lower frequency.stop, or choose the number of vectors and accept its error"
             )
-        count = min(2 * count, _MOST)
+        count = min(count + count // 2, _MOST)

@@ -1,7 +1,7 @@
 """Reduction of a structure to few coordinates, with its size and its error (Eq. 9 to 12)."""
 
 from .errors import deviation, estimated_deviation, static_defect
-from .fixed import constraint_modes, craig_bampton, guyan, lanczos
+from .fixed import LanczosReduction, constraint_modes, craig_bampton, guyan, lanczos
 from .flexibility import Flexibility, inertia_relief
 from .free import free_interface
 from .held import Held, hold
@@ -11,6 +11,7 @@ from .record import Reduction, reduced_modes, reduced_structure
 __all__ = [
     "Flexibility",
     "Held",
+    "LanczosReduction",
     "Reduction",
     "constraint_modes",
     "craig_bampton",

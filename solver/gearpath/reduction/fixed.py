@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..components.structure import Structure
 from ..errors import InputError
 from ..numerics.arrays import Real
-from ..numerics.lanczos import block_lanczos, independent
+from ..numerics.lanczos import BlockLanczos, independent
 from .held import Held, hold
 from .interface import interface_rows, mesh_spins, port_rows
 from .normal_modes import lowest_modes
@@ -67,16 +67,28 @@ def lanczos(
     default gearbox is decided by rounding. rows default to the ports, since the mesh
     response is the first vector. Fewer vectors come back where the Krylov space ends before.
     """
-    held = held or hold(structure, port_rows(structure) if rows is None else rows)
-    _check_count(vectors)
-    spins = _spins(held)
-    loads = [held.load(_mesh_forces(structure))]
-    if start == "block":
-        loads.append(held.load(structure.mass @ held.constraint_modes))
-    first = held.factor.solve(np.hstack(loads))
-    found = block_lanczos(lambda x: held.factor.solve(held.mass @ x), held.mass, first, vectors, spins)
-    name = "Lanczos vectors, block start" if start == "block" else "Lanczos vectors, mesh start"
-    return _reduction(held, name, spins, found.vectors)
+    return LanczosReduction(held or hold(structure, port_rows(structure) if rows is None else rows), start).take(
+        vectors
+    )
+
+
+class LanczosReduction:
+    """`lanczos` of a held structure with one number of vectors after the other; none is found twice."""
+
+    def __init__(self, held: Held, start: Literal["block", "mesh"] = "block") -> None:
+        self._held, self._spins = held, _spins(held)
+        mass = held.structure.mass
+        loads = [held.load(np.asarray(mass @ mesh_spins(held.structure)))]
+        if start == "block":
+            loads.append(held.load(mass @ held.constraint_modes))
+        first = held.factor.solve(np.hstack(loads))
+        self._name = f"Lanczos vectors, {start} start"
+        self._vectors = BlockLanczos(lambda x: held.factor.solve(held.mass @ x), held.mass, first, self._spins)
+
+    def take(self, vectors: int) -> Reduction:
+        """The reduction by the constraint modes and the first `vectors` vectors."""
+        _check_count(vectors)
+        return _reduction(self._held, self._name, self._spins, self._vectors.take(vectors).vectors)
 
 
 def craig_bampton(structure: Structure, vectors: int, rows: Any = None, held: Held | None = None) -> Reduction:
@@ -95,10 +107,6 @@ def craig_bampton(structure: Structure, vectors: int, rows: Any = None, held: He
 def _check_count(vectors: int) -> None:
     if vectors < 0:
         raise InputError(f"the number of vectors is {vectors}; give zero or more")
-
-
-def _mesh_forces(structure: Structure) -> Real:
-    return np.asarray(structure.mass @ mesh_spins(structure))
 
 
 def _spins(held: Held) -> Real:
