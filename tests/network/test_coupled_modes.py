@@ -40,7 +40,7 @@ def basis(network, modes):
         ("helical_gearbox", {PairKind.OSCILLATING: 149, PairKind.DRIFTING: 1}),
         pytest.param(
             "test_rig",
-            {PairKind.OSCILLATING: 280, PairKind.DECAYING: 8, PairKind.DRIFTING: 6},
+            {PairKind.OSCILLATING: 250, PairKind.DECAYING: 8, PairKind.DRIFTING: 6},
             marks=pytest.mark.slow,
         ),
     ],

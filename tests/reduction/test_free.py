@@ -7,7 +7,15 @@ from hypothesis import strategies as st
 from sources import chain, elastic_flexibility, random_source, sparse
 
 from gearpath.errors import InputError
-from gearpath.reduction import free_interface, inertia_relief, interface_rows, reduced_modes, static_defect
+from gearpath.reduction import (
+    free_interface,
+    hold,
+    inertia_relief,
+    interface_rows,
+    port_rows,
+    reduced_modes,
+    static_defect,
+)
 from gearpath.reduction import normal_modes as module
 
 
@@ -19,6 +27,17 @@ def test_inertia_relief_is_the_sum_over_the_elastic_modes(seed):
     exact, found = L @ elastic_flexibility(source) @ L.T, L @ inertia_relief(source).apply(L.T)
     size = np.sqrt(np.diag(exact))
     assert abs((found - exact) / np.outer(size, size)).max() < 1e-4  # the eigensolver's digits of the lowest modes
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_it_does_not_matter_where_the_structure_is_held(seed):
+    """At no more coordinates than keep it in place, or at all ports, whose own motion is then added."""
+    source = random_source(seed)
+    L = interface_rows(source).toarray()
+    plain, ports = (L @ inertia_relief(source, held).apply(L.T) for held in (None, hold(source, port_rows(source))))
+    size = np.sqrt(np.diag(plain))
+    assert abs((ports - plain) / np.outer(size, size)).max() < 1e-8
 
 
 def test_flexibility_of_a_chain_of_two():

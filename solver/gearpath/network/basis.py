@@ -22,7 +22,7 @@ def basis_of(structure: Structure, band: float, vectors: int | None) -> Modes:
     if vectors is not None:
         return reduced_modes(structure, lanczos.take(vectors))
     omega = 2.0 * np.pi * np.linspace(band / _LINES, band, _LINES)
-    flexibility = inertia_relief(structure)
+    flexibility = inertia_relief(structure, held)
     count = max(4 * held.boundary, 24)
     while True:
         reduction = lanczos.take(count)

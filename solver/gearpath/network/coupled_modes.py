@@ -19,7 +19,7 @@ from ..numerics.arrays import Complex, Real
 from .modal import ModalNetwork
 from .time_twin import state_scale, time_twin
 
-_DEFECT = 1e-10  # largest deviation of T^-1 T from I: beyond, the basis is not well conditioned
+_DEFECT = 1e-10  # largest deviation of T^-1 T from I, T's columns of unit length: beyond, T is not well conditioned
 
 
 class PairKind(IntEnum):
@@ -156,5 +156,7 @@ def _is_well_conditioned(modes: CoupledModes, w: Real, D: _Matrix) -> bool:
             y = np.concatenate([(p * h + (D @ h[:, None])[:, 0]) / w, h]) / n
             right += [x] if kind is PairKind.DECAYING else [x, x.conj()]
             left += [y] if kind is PairKind.DECAYING else [y, y.conj()]
-    product = np.array(left) @ np.array(right).T
-    return bool(abs(product - np.eye(len(product))).max() < _DEFECT)
+    T = np.array(right).T
+    length = np.linalg.norm(T, axis=0)  # left and right vectors belong to each other; how long they are says nothing
+    defect = length[:, None] * (np.array(left) @ T - np.eye(len(length))) / length
+    return bool(abs(defect).max() < _DEFECT)
