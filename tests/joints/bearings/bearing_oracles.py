@@ -173,6 +173,12 @@ def gradient(oracle, q):
     return energy(oracle, np.asarray(q) + 1j * STEP * np.eye(5)).imag / STEP
 
 
+def lost_digits(oracle, q):
+    """Relative rounding of the deepest approach, which is a difference of lengths of some millimetres."""
+    deepest = max(approach.real.max() for _, _, approach in oracle.contacts(np.asarray(q, complex)))
+    return np.finfo(float).eps * 5e-3 / deepest if deepest > 0 else 0.0
+
+
 def nearly_touching(oracle, q, share=1e-9):
     """Whether an element is so near its first contact that rounding decides whether it bears."""
     gaps = np.abs([approach for _, _, approach in oracle.contacts(np.asarray(q, complex))])

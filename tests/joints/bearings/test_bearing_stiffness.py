@@ -19,22 +19,22 @@ def test_load_and_stiffness_are_the_derivatives_of_the_energy(kind, seed):
     ours, oracle = random_pair(kind, rng)
     q = random_displacement(ours, rng)
     assume(not oracles.nearly_touching(oracle, q[:5]))
-    K, f = ours.stiffness(q), ours.load(q)
+    K, f, limit = ours.stiffness(q), ours.load(q), 1e-10 + oracles.lost_digits(oracle, q[:5])
 
     assert not K[5].any()
     assert not K[:, 5].any()
     assert f[5] == 0.0
     S, wanted = scaled(K, ours.lever)[:5, :5], scaled(oracles.stiffness(oracle, q[:5]), ours.lever)
     size = np.abs(wanted).max()
-    assert np.abs(S - wanted).max() <= 1e-10 * size
+    assert np.abs(S - wanted).max() <= limit * size
     assert np.abs(S - S.T).max() <= 1e-12 * size
     assert np.linalg.eigvalsh(S).min() >= -1e-13 * size
 
     unit = np.array([1, 1, 1, ours.lever, ours.lever])
     gradient = oracles.gradient(oracle, q[:5]) / unit
-    assert np.abs(f[:5] / unit - gradient).max() <= 1e-10 * np.abs(gradient).max()
+    assert np.abs(f[:5] / unit - gradient).max() <= limit * np.abs(gradient).max()
     U = oracles.energy(oracle, q[:5]).real
-    assert ours.energy(q) == pytest.approx(U, rel=1e-10, abs=0)
+    assert ours.energy(q) == pytest.approx(U, rel=limit, abs=0)
 
 
 def test_the_random_cases_have_all_elements_in_contact_some_of_them_and_none():
