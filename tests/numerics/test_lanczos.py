@@ -6,7 +6,7 @@ import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearpath.numerics.lanczos import BlockLanczos
+from gearpath.numerics.lanczos import BlockLanczos, independent
 
 
 def pencil(seed, n, spread=4.0):
@@ -86,6 +86,29 @@ def test_vectors_stay_away_from_what_is_held():
     held = modes[:, [1, 4]] / np.sqrt(np.diag(modes.T @ M @ modes))[[1, 4]]
     V = run(K, M, np.ones((30, 1)), 10, held).vectors
     assert abs(held.T @ M @ V).max() < 1e-12
+
+
+def test_short_remainders_are_as_orthogonal_as_long_ones():
+    """Columns that add a hundred-millionth of their length to others, of which rounding leaves as much again."""
+    rng = np.random.default_rng(14)
+    mass = np.diag(rng.uniform(0.3, 3.0, 50))
+    none = np.zeros((50, 0))
+    V = independent(rng.normal(size=(50, 6)), mass, none, none)
+    near = V @ rng.normal(size=(6, 3)) + 1e-8 * rng.normal(size=(50, 3))
+    far = rng.normal(size=(50, 1))
+    added = independent(np.hstack([near, far, far + 1e-8 * rng.normal(size=(50, 1))]), mass, V, mass @ V)
+    assert added.shape == (50, 5)
+    assert abs(V.T @ mass @ added).max() < 1e-14
+    assert abs(added.T @ mass @ added - np.eye(5)).max() < 1e-14
+
+
+def test_directions_without_mass_add_nothing():
+    """Neither a coordinate without mass nor a combination of two that have some."""
+    mass = scipy.linalg.block_diag([[1.0, 1.0], [1.0, 1.0]], np.diag([2.0, 0.0, 3.0]))
+    none = np.zeros((5, 0))
+    added = independent(np.eye(5), mass, none, none)
+    assert added.shape == (5, 3)
+    assert abs(added.T @ mass @ added - np.eye(3)).max() < 1e-14
 
 
 def test_the_same_input_gives_the_same_vectors():

@@ -75,10 +75,8 @@ def independent(X: Real, mass: Any, V: Real, momentum: Real) -> Real:
         X = X - V @ (momentum.T @ X)
     base, coordinates = _based(X, mass)
     found = base @ _most_independent(coordinates)
-    for _ in range(2):  # a remainder may be short: what rounding left along the others counts again
-        found = found - V @ (momentum.T @ found)
-        found = _orthonormal(found, mass)
-    return found
+    found = found - V @ (momentum.T @ found)  # a remainder may be short: what rounding left along the others counts
+    return _orthonormal(found, mass)
 
 
 def _based(X: Real, mass: Any) -> tuple[Real, Real]:
