@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from systems import random_gearbox
 
@@ -43,12 +43,6 @@ def rounding(network, load, force):
     return np.finfo(float).eps * bound
 
 
-def apparent_power(modal, load):
-    """|F v*| / 2 of the excitation (W): where hardly anything is lost, the input power is a small rest of it."""
-    drive = LINES**2 if load.is_transmission_error else 1.0
-    return 0.5 * abs(load.column @ Synthesis(modal, [load]).solve(LINES).elastic[:, 0]) * drive
-
-
 def check_synthesis_against_reference(system):
     network = assemble(system)
     modal = network.modal()
@@ -63,19 +57,19 @@ def check_synthesis_against_reference(system):
         relative = np.maximum(relative, bound[rows].max(axis=0) / np.maximum(largest, 1e-300))
         assert np.all(deviation <= 1e-9 * largest + 1e3 * bound[rows].max(axis=0) + 1e-300)
     flow = power_flow(modal, LINES)
-    gross = abs(flow.path_power).sum(axis=0)  # where the paths nearly cancel, the net is small
-    net = reference.alpha * reference.input_power
-    assert np.all(abs(flow.transmitted_power - net) <= (1e-8 + 1e3 * relative) * gross)
-    # the reference's is the real part of a product that is nearly imaginary where hardly anything is lost
-    cancelled = 1e3 * np.finfo(float).eps * apparent_power(modal, load)
-    assert np.all(abs(flow.input_power - reference.input_power) <= 1e-8 * flow.input_power + cancelled)
+    gross = abs(flow.path_power).sum(axis=0) / flow.input_power  # where the paths nearly cancel, the net is small
+    assert np.all(abs(flow.share() - reference.alpha) <= (1e-8 + 1e3 * relative) * gross)
 
 
 def check_balance_and_passivity(system):
     modal = assemble(system).modal()
     flow, load = power_flow(modal, LINES), next(item for item in modal.loads if item.name == modal.excitation)
-    lost = flow.dissipated_power.sum(axis=0)
-    assert np.all(abs(lost - flow.input_power) < 1e-8 * flow.input_power + 1e-11 * apparent_power(modal, load))
+    drive = LINES**2 if load.is_transmission_error else 1.0
+    apparent = 0.5 * abs(load.column @ Synthesis(modal, [load]).solve(LINES).elastic[:, 0]) * drive
+    # the input power is a small rest of the apparent power where hardly anything is lost
+    assert np.all(
+        abs(flow.dissipated_power.sum(axis=0) - flow.input_power) < 1e-8 * flow.input_power + 1e-11 * apparent
+    )
     assert np.all(flow.dissipated_power >= 0.0)
     assert np.all(flow.transmitted_power >= -1e-10 * flow.input_power)
     assert np.all(flow.share() < 1.0 + 1e-10)
@@ -95,6 +89,8 @@ def check_reciprocity(system):
 
 @settings(max_examples=200, deadline=None)
 @given(machines)
+@example(random_gearbox(2482, 1))  # moves 100,000 times as far as it deforms: damping must not resist rigid motion
+@example(random_gearbox(28180, 1, True))
 def test_synthesis_equals_the_unsynthesised_solution(system):
     check_synthesis_against_reference(system)
 

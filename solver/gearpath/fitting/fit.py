@@ -13,7 +13,7 @@ from ..numerics.arrays import Complex, Real
 from .complex_modes import complex_residual
 from .diagnosis import check_data, is_positive_real, place_of
 from .misfit import SYSTEMATIC, correlation, errors, largest_error
-from .order import grow
+from .order import Told, grow
 from .problem import Problem
 from .quantity import as_mobility
 from .record import DataCheck, ModalFit
@@ -60,7 +60,7 @@ def fit_modes(
     mobility: Complex,
     modes: int | None,
     tolerance: float,
-    progress: Callable[[int, float], None] = lambda *_: None,
+    progress: Told = lambda *_: None,
 ) -> ModalFit:
     """Real modes of a checked mobility (F, m, m) at increasing `omega` (rad/s); see `fit_mobility`."""
     data = check_data(omega, mobility)

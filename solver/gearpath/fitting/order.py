@@ -24,7 +24,7 @@ _AT_ONCE = 4  # modes added in one step, or a quarter of those there are
 Told = Callable[[int, float], None]  # modes so far, and the largest error that they leave
 
 
-def grow(problem: Problem, most: int, tolerance: float, progress: Told = lambda *_: None) -> Refined:
+def grow(problem: Problem, most: int, tolerance: float, progress: Told) -> Refined:
     """As few modes as meet the tolerance, or as the misfit pays for; never more than `most`.
 
     Where several modes at a time lead into a poor minimum, they are tried again one by one.

@@ -32,7 +32,7 @@ from .reference_parts import Part, load_of, massless, measured_parts, reference_
 Extended = NDArray[np.longdouble]
 ExtendedComplex = NDArray[np.clongdouble]
 _REFINEMENTS = 10
-_EARNEST = 1e-9  # of |K||R|: more is no rounding
+_EARNEST = 1e-12  # of |R|^T |K| |R|: more is no rounding
 
 
 @dataclass(frozen=True)
@@ -158,7 +158,8 @@ def _exactly_free(structure: Structure, matrix: Real) -> Extended:
     if not basis:
         return K
     R = np.array(basis).T
-    if (abs(K @ R) > _EARNEST * (abs(K) @ abs(R))).any():
+    # by the power that each motion takes: single rows of a damping matrix may hold nothing but rounding
+    if (np.diag(R.T @ K @ R) > _EARNEST * np.diag(abs(R).T @ abs(K) @ abs(R))).any():
         return K
     momentum = M @ R
     K = K - momentum @ (R.T @ K)

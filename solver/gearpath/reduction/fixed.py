@@ -57,7 +57,6 @@ def lanczos(
     vectors: int,
     rows: Any = None,
     start: Literal["block", "mesh"] = "block",
-    held: Held | None = None,
 ) -> Reduction:
     """Constraint modes and Lanczos vectors of the held interior, the paper's basis Gamma_s (Eq. 10).
 
@@ -67,9 +66,7 @@ def lanczos(
     default gearbox is decided by rounding. rows default to the ports, since the mesh
     response is the first vector. Fewer vectors come back where the Krylov space ends before.
     """
-    return LanczosReduction(held or hold(structure, port_rows(structure) if rows is None else rows), start).take(
-        vectors
-    )
+    return LanczosReduction(hold(structure, port_rows(structure) if rows is None else rows), start).take(vectors)
 
 
 class LanczosReduction:
